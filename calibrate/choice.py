@@ -18,7 +18,7 @@ from tipoff.calibration import alignment, compliant
 from tipoff.calibration.faults import CalibrationError
 from tipoff.calibration.information import WEAK_EIGENVALUE, information, jacobian
 from tipoff.calibration.parameters import Parameter, siblings
-from tipoff.scenes.faults import close
+from tipoff.faults import close
 from tipoff.scenes.scene import Scene
 
 ALL = "all"

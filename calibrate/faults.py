@@ -3,13 +3,13 @@
 from collections.abc import Mapping, Sequence
 
 from tipoff.comparison.curves import Curves
+from tipoff.faults import Fault, InputError, SceneError, kind_of
 from tipoff.mechanics.laws import thrust
 from tipoff.mechanics.model_names import SPRINGS
 from tipoff.results.trajectory import Trajectory
-from tipoff.scenes.faults import Fault, InputError, SceneError, kind_of
 from tipoff.scenes.rounding import apart
 from tipoff.scenes.scene import Scene
-from tipoff.scenes.units import duration
+from tipoff.units import duration
 
 
 class CalibrationError(InputError):

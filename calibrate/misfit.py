@@ -10,7 +10,7 @@ import numpy as np
 from tipoff.calibration.discrepancy import LEAST, RATE
 from tipoff.calibration.objective import Target, sampled
 from tipoff.results.trajectory import Trajectory
-from tipoff.scenes.units import duration
+from tipoff.units import duration
 
 VELOCITY = 0.05  # largest relative error of v_x: thrust and mass of a test are known better
 _SIGNAL = 5.0  # standard deviations of the noise's power; a weaker segment is not judged

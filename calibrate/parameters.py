@@ -17,9 +17,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from tipoff.faults import Fault, SceneError
 from tipoff.scenes.effects.contact import ContactTable, HuntCrossleyTable, ImpactTable, LinearTable
 from tipoff.scenes.effects.friction import FrictionTable
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
 REFERENCE_PENETRATION = 2e-5  # m

@@ -3,7 +3,8 @@
 import math
 from dataclasses import asdict, dataclass
 
-from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS, is_number, single
+from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS
+from tipoff.units import is_number, single
 
 LEAST_CELLS = 16  # along each edge of a pad face, by default
 _MOST_CELLS = 1000

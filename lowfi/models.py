@@ -1,10 +1,10 @@
 """Options of the two models of the surrogate, ``compliant`` and ``springs``."""
 
+from tipoff.faults import Fault, SceneError
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import GeometryTable, MeshTable
 from tipoff.scenes.rail_compliance import model_of
 from tipoff.scenes.scene import Scene

@@ -13,7 +13,7 @@ from tipoff.mechanics.rail_compliance import (
     MODES,
     MOST_DEGREE,
 )
-from tipoff.scenes.units import is_number, single
+from tipoff.units import is_number, single
 
 AUTO = "auto"
 _LEAST_CELLS, _MOST_CELLS = 4, 100

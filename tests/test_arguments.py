@@ -8,8 +8,8 @@ import pint
 import pytest
 
 import tipoff
-from tipoff import highfi, lowfi
-from tipoff.scenes import arguments, units
+from tipoff import highfi, lowfi, units
+from tipoff.scenes import arguments
 
 TINY = tipoff.load("tiny")
 OTHER = pint.UnitRegistry()

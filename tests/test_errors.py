@@ -2,9 +2,9 @@
 
 from concurrent.futures import ProcessPoolExecutor
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import DamageError
 from tipoff.highfi.dynamics.checkpoint import CheckpointError
-from tipoff.scenes.faults import Fault, SceneError
 
 ERRORS = (
     SceneError([Fault("a", "b", "1 m", "2 m"), Fault("a", "c", "nothing", "this key")]),

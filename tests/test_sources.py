@@ -204,4 +204,4 @@ def test_readers_are_modules_whose_results_solvers_do_not_use():
         if name.split(".")[1] in ("highfi", "lowfi", "calibration", "mechanics", "kernels")
         for reader in sources.used_by(name) & set(sources.READERS)
     }
-    assert {reader for _, reader in beyond} == {"tipoff.scenes.faults"}
+    assert {reader for _, reader in beyond} == {"tipoff.faults"}

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tipoff import scenes
+from tipoff.faults import kind_of
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE, MOST_DEGREE, RailCompliance
 from tipoff.results.trajectory import Trajectory
@@ -21,7 +22,6 @@ from tipoff.scenes import (
 )
 from tipoff.scenes import catalog as catalog
 from tipoff.scenes import parse as parse
-from tipoff.scenes.faults import kind_of
 
 _EXPECTED = {
     "compliance": arguments.kind(

@@ -25,6 +25,7 @@ LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "scikit-fem")  # they may ch
 # Modules that determine no number of a run: they read files to values, which the hash of a scene has, or
 # make words of a scene or of a run.
 READERS = (
+    "tipoff.faults",
     *(
         f"tipoff.scenes.{name}"
         for name in (

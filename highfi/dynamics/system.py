@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError
 from tipoff.highfi.contact import surface
 from tipoff.highfi.dynamics import mounts, pushers
 from tipoff.highfi.extruded import mesh as extruded
@@ -21,7 +22,6 @@ from tipoff.mechanics.laws.structural_damping import Damping
 from tipoff.mechanics.model import Faces, Model
 from tipoff.scenes import scene_model
 from tipoff.scenes.body import inverse, tensor
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
 _MOST_SLABS = 64

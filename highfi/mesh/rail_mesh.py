@@ -17,6 +17,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 
+from tipoff.faults import InputError
 from tipoff.highfi.mesh import file_elements
 from tipoff.highfi.mesh.asked import AS_DRAWN, Asked
 from tipoff.highfi.mesh.cells import (
@@ -30,7 +31,6 @@ from tipoff.highfi.mesh.file_elements import FILE_ELEMENTS
 from tipoff.highfi.mesh.files.opened import opened
 from tipoff.highfi.mesh.files.tables import Unreadable
 from tipoff.highfi.mesh.named_surfaces import Boundary, named_surfaces
-from tipoff.scenes.faults import InputError
 
 SUPPORTED = "hexahedra of 8, 20 or 27 nodes and tetrahedra of 4 or 10 nodes"
 _ONE_TYPE = (

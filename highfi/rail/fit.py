@@ -10,6 +10,7 @@ edge, which pads strike or fall off, and the contact potential jumps there.
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError
 from tipoff.highfi.mesh import facets, pieces
 from tipoff.highfi.mesh.asked import axes_along
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh
@@ -17,7 +18,6 @@ from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.rail.drawn_walls import SAME
 from tipoff.mechanics.model import Faces
 from tipoff.scenes import scene_model
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail import GeometryTable, MeshTable, SectionTable
 from tipoff.scenes.rounding import apart

@@ -2,11 +2,11 @@
 
 from collections.abc import Collection
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import content_hash
 from tipoff.highfi.rail import profile_rail
 from tipoff.meshes import l_rail, profile
 from tipoff.meshes.profile import Profile
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.rounding import apart, at_most

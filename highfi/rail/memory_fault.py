@@ -1,11 +1,11 @@
 """Refuses a rail from a file if its elements would not fit into memory, before it is split or
 meshed. A wrong unit, in the file or of the element size, can give billions of elements."""
 
+from tipoff.faults import Fault, SceneError
 from tipoff.highfi.mesh import split
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.rail import memory_estimate
 from tipoff.highfi.statics import assembly
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
 # Elements of nodes a length h apart, per h^3 of solid: tetrahedra of edges 2 h are about

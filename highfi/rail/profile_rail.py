@@ -1,9 +1,9 @@
 """The rail of a scene that has a section of its own, as it is meshed: its walls are the sides that face
 the pads."""
 
+from tipoff.faults import Fault, SceneError
 from tipoff.meshes.profile import Profile
 from tipoff.scenes import scene_model
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.sections.outline import SAME

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import meshio
 
+from tipoff.faults import SceneError
 from tipoff.highfi.mesh import split, touching
 from tipoff.highfi.mesh.asked import asked
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, along_x, read
@@ -12,7 +13,6 @@ from tipoff.highfi.rail import memory_fault, profile_rail, solid_process, step_c
 from tipoff.highfi.rail.fit import check_areas, check_frame, check_held
 from tipoff.highfi.rail.geometry import l_section
 from tipoff.meshes import l_rail, profile
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail import GeometryTable, SectionTable
 from tipoff.scenes.scene import Scene

@@ -5,11 +5,11 @@ from functools import partial
 
 import numpy as np
 
+from tipoff.faults import SceneError
 from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
 from tipoff.highfi.rail import memory_fault, step_cost
 from tipoff.highfi.rail.fit import unit_of
 from tipoff.meshes import imprint, solid
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail import GeometryTable
 from tipoff.scenes.scene import Scene
 

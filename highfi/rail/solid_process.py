@@ -18,6 +18,7 @@ from typing import Any
 import meshio
 import numpy as np
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import tell
 from tipoff.highfi.mesh.rail_mesh import MeshError
 from tipoff.highfi.rail import memory_estimate
@@ -25,7 +26,6 @@ from tipoff.highfi.rail.solid_mesh import meshed
 from tipoff.meshes import msh
 from tipoff.meshes.generator import GmshUnavailable
 from tipoff.scenes import parse
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import GeometryTable
 from tipoff.scenes.scene import Scene
 

@@ -13,6 +13,7 @@ refused if this ratio exceeds ``MOST``.
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
 from tipoff.highfi.rail.geometry import geometry
 from tipoff.highfi.rail.scene_mesh import make_mesh
@@ -22,7 +23,6 @@ from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust
 from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 from tipoff.scenes import launch, scene_model
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import MeshTable, SectionTable
 from tipoff.scenes.rail_base import MaterialTable
 from tipoff.scenes.rounding import apart

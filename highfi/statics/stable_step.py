@@ -18,10 +18,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import eigh_tridiagonal
 
+from tipoff.faults import InputError
 from tipoff.highfi.statics.assembly import Operator
 from tipoff.highfi.statics.mounts import largest_share
 from tipoff.highfi.statics.operator import internal_force
-from tipoff.scenes.faults import InputError
 
 _BATCH = 2048  # classes of elements treated at once; bounds the memory of an unstructured mesh
 _DIVIDES = 1e-9  # allowed relative error of a requested step as a divisor of the sample interval

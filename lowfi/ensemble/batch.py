@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tipoff.faults import SceneError
 from tipoff.lowfi.dynamics import cases, integrate
 from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
@@ -22,7 +23,6 @@ from tipoff.mechanics.model import Faces, Model
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import changes, launch, rail_compliance, scene_model
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.scene_model import Built
 from tipoff.scenes.variation import Variations

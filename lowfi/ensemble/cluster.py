@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
+from tipoff.faults import Fault, SceneError
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.batch import Family
 from tipoff.lowfi.ensemble.columns import Columns
@@ -21,7 +22,6 @@ from tipoff.lowfi.ensemble.threads import PIECE, in_order
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
 PATIENCE = 30.0  # s without an answer of the scheduler, or without a worker

@@ -25,6 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.faults import SceneError
 from tipoff.lowfi import modes
 from tipoff.lowfi.ensemble import store as stores
 from tipoff.lowfi.ensemble import twins
@@ -32,7 +33,6 @@ from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.lowfi.simulation import solved
 from tipoff.lowfi.single_run import SingleRun, integrated
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail_compliance import may_vibrate
 from tipoff.scenes.scene import Scene
 

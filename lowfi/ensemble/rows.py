@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from tipoff import units
 from tipoff.lowfi.ensemble.sampling import Points
 from tipoff.scenes import overrides as keys
-from tipoff.scenes import units
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 

@@ -12,7 +12,7 @@ import warnings
 import numpy as np
 import scipy  # its submodules load at their first use
 
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 from tipoff.scenes.uncertainty import Uncertainty
 
 # numbers of a Latin hypercube: 128 MiB, and three times as much during its creation

@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from tipoff.scenes import csv_file, units
+from tipoff import units
+from tipoff.faults import Fault, SceneError
+from tipoff.scenes import csv_file
 from tipoff.scenes import overrides as keys
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
 _TOO_MANY, _TOO_FEW = "cells beyond the header", "a missing cell"

@@ -18,6 +18,7 @@ from tests.highfi.mesh import forms
 from tipoff import scenes
 from tipoff.comparison.curve_files.layout import of_options
 from tipoff.comparison.curves import Curves
+from tipoff.faults import InputError
 from tipoff.highfi.compliance import walls
 from tipoff.highfi.mesh import touching
 from tipoff.highfi.mesh.asked import AS_DRAWN, Asked
@@ -27,7 +28,6 @@ from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.meshes import generator
 from tipoff.scenes import implausible, reading, scene_model, uncertainty
-from tipoff.scenes.faults import InputError
 from tipoff.scenes.rail import SectionTable
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.commands.running import Output, guarded, study_of

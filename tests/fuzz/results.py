@@ -22,13 +22,13 @@ from tests.studies import synthetic
 from tipoff import files, scenes
 from tipoff.calibration import rail_compliance
 from tipoff.comparison import metrics
+from tipoff.faults import Fault, SceneError
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, CheckpointError, restore
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.store import CHUNK, Chunk, Store, StoreError
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.results.trajectory import Trajectory, content
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail_compliance import of_scene
 from tipoff.studies.agreement import other_rails
 from tipoff.studies.calibration import forecast

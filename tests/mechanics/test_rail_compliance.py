@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from tipoff import lowfi, scenes
+from tipoff.faults import SceneError
 from tipoff.files import write_sealed
 from tipoff.mechanics.laws.thermal import FIELDS
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, content, pairs
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail_compliance import digest, require
 
 SCENE = scenes.load("reference")

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from tipoff.faults import SceneError
 from tipoff.scenes import load, uncertainty
 from tipoff.scenes.distributions import BY_NAME
-from tipoff.scenes.faults import SceneError
 
 KEY = "payload.mass"
 MIDDLES = (np.arange(1_000_000) + 0.5) / 1_000_000  # quadrature of any function of a quantile

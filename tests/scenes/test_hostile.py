@@ -13,7 +13,7 @@ from tipoff.scenes.csv_file import MOST_LINES, listed
 from tipoff.scenes.overrides import DEEPEST
 from tipoff.scenes.scene import CATALOG
 from tipoff.scenes.table import MOST
-from tipoff.scenes.units import to_si
+from tipoff.units import to_si
 
 pytestmark = pytest.mark.case("X19")
 

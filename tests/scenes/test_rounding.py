@@ -12,8 +12,8 @@ from tipoff import highfi
 from tipoff.comparison.curves import Curves
 from tipoff.scenes import SceneError, load, parse, rounding
 from tipoff.scenes.distributions import Uniform
-from tipoff.scenes.units import duration
 from tipoff.studies.commands.options import in_millimetres
+from tipoff.units import duration
 
 LENGTHS = {"m": 1e6, "cm": 1e4, "mm": 1e3, "um": 1.0, "inch": 25400.0, "ft": 304800.0}
 REAR = -8000  # um, X of the rear edge of the pads of a small scene: a rail ends beyond it

@@ -11,7 +11,7 @@ import pytest
 from tipoff.scenes import catalog
 from tipoff.scenes.reading import CATALOG
 from tipoff.scenes.schema import schema
-from tipoff.scenes.units import to_si
+from tipoff.units import to_si
 
 TYPES = {"object": dict, "array": list, "string": str, "boolean": bool}
 TYPES |= {"number": (int, float), "integer": int}

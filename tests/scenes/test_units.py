@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tipoff.scenes import units
-from tipoff.scenes.units import parse, to_si
+from tipoff import units
+from tipoff.units import parse, to_si
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import typer
 from typer.testing import CliRunner
 
 from tests.studies import kept
-from tipoff.scenes.faults import SceneError
+from tipoff.faults import SceneError
 from tipoff.studies import registry
 from tipoff.studies.cli import app
 from tipoff.studies.runs import stage as runs

@@ -11,9 +11,9 @@ from typer.testing import CliRunner
 from tests.scenes.test_calibration import CALIBRATION
 from tests.studies.agreement.made import ROW, table
 from tipoff import scenes
+from tipoff.faults import SceneError
 from tipoff.lowfi import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
-from tipoff.scenes.faults import SceneError
 from tipoff.studies.agreement import kept
 from tipoff.studies.cli import app
 from tipoff.studies.commands import options

@@ -7,8 +7,8 @@ import pytest
 import typer
 
 from tipoff import scenes
+from tipoff.faults import SceneError
 from tipoff.mechanics.rail_compliance import MODES
-from tipoff.scenes.faults import SceneError
 from tipoff.workspace import settings
 from tipoff.workspace.options import between, require
 from tipoff.workspace.stage import csv_of

@@ -13,10 +13,10 @@ import numpy as np
 
 from tipoff.comparison.curve_files import reading
 from tipoff.comparison.curve_files.layout import OF_THE_FORMAT, RATES, Layout
+from tipoff.faults import Fault, SceneError
 from tipoff.mechanics.run_limits import SETTLE_WINDOW
 from tipoff.results.trajectory import Trajectory
-from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.units import duration
+from tipoff.units import duration
 
 # s; a pad contact lasts milliseconds, and the settled window needs several samples
 LONGEST_STEP = 0.5 * SETTLE_WINDOW

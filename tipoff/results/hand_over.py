@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import write_csv, write_json, write_text
 from tipoff.mechanics.run_limits import EXIT_WINDOW
 from tipoff.scenes.effects.hand_over import Standing, standing
-from tipoff.scenes.faults import Fault, SceneError
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tipoff.cards import fixed
+from tipoff.faults import SceneError
 from tipoff.mechanics import instant
 from tipoff.mechanics.outcome import Outcome
 from tipoff.results import hand_calculation, unfinished
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import parse
-from tipoff.scenes.units import duration
+from tipoff.units import duration
 
 if TYPE_CHECKING:
     from tipoff.results.trajectory import Trajectory

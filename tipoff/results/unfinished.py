@@ -17,7 +17,7 @@ from tipoff.mechanics.run_limits import LONGEST, MOST_SAMPLES, SETTLE_DELAY, SET
 from tipoff.scenes import launch
 from tipoff.scenes.rounding import below
 from tipoff.scenes.scene import Scene
-from tipoff.scenes.units import duration
+from tipoff.units import duration
 
 if TYPE_CHECKING:
     from tipoff.results.trajectory import Trajectory

@@ -6,10 +6,12 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
-from tipoff.scenes import overrides, suggestions, units
-from tipoff.scenes.faults import Fault, SceneError, close, kind_of
+from tipoff import units
+from tipoff.faults import Fault, SceneError, close, kind_of
+from tipoff.scenes import overrides, suggestions
 from tipoff.scenes.rounding import below
 from tipoff.scenes.scene import Scene, load
+from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS
 
 _T = TypeVar("_T")
 _LENGTHS = {"element_size": "m", "step": "s", "speed_floor": "m/s"}  # numerics with a unit
@@ -126,8 +128,8 @@ def length(name: str, given: Any) -> float:
         value = units.parse(given, "m", bare_numbers_are_si=True)
     except ValueError as fault:
         raise SceneError([Fault("arguments", name, repr(given), str(fault))]) from None
-    if below(value, units.FINEST_ELEMENTS) or below(units.COARSEST_ELEMENTS, value):
-        between = f"{units.FINEST_ELEMENTS:g} to {units.COARSEST_ELEMENTS:g} m"
+    if below(value, FINEST_ELEMENTS) or below(COARSEST_ELEMENTS, value):
+        between = f"{FINEST_ELEMENTS:g} to {COARSEST_ELEMENTS:g} m"
         raise SceneError([Fault("arguments", name, repr(given), between)])
     return value
 

@@ -16,9 +16,9 @@ from typing import TextIO
 
 import numpy as np
 
+from tipoff import units
+from tipoff.faults import MOST_ALIKE, Fault, SceneError
 from tipoff.files import encoding, open_input
-from tipoff.scenes import units
-from tipoff.scenes.faults import MOST_ALIKE, Fault, SceneError
 
 Line = tuple[int, list[str]]  # its number in the file, and its cells
 _HEAD = re.compile(r"(.*?)[\s/]*(?:\[([^\[\]]*)\]|\(((?:[^()]|\([^()]*\))*)\))")

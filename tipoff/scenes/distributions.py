@@ -18,7 +18,7 @@ from pydantic import BeforeValidator, ValidationInfo, field_validator
 
 from tipoff.scenes.rounding import at_most
 from tipoff.scenes.table import Table
-from tipoff.scenes.units import parse
+from tipoff.units import parse
 
 
 def _in_unit_of_key(value: Any, info: ValidationInfo[dict[str, Any]]) -> float:

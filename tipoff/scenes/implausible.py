@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tipoff.faults import SceneError
 from tipoff.scenes import uncertainty
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
 

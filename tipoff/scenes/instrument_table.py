@@ -18,9 +18,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes import csv_file, units
+from tipoff import units
+from tipoff.faults import Fault
+from tipoff.scenes import csv_file
 from tipoff.scenes.csv_file import Line
-from tipoff.scenes.faults import Fault
 
 PAGE = "docs/reference/file_formats.md"
 _MARKS = ("#", "%", "!", "//", ";")  # of comment lines; a separator is no mark

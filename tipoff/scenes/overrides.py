@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
 
-from tipoff.scenes.faults import NO_SUCH_KEY, Fault, SceneError, kind_of
+from tipoff.faults import NO_SUCH_KEY, Fault, SceneError, kind_of
 from tipoff.scenes.table import Table
 
 _TEXTS = ("name", "description")

@@ -12,8 +12,9 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, PrivateAttr, Tag
 from pydantic import model_validator as model
 
+from tipoff.faults import close
 from tipoff.files import content_hash
-from tipoff.scenes.faults import close, within
+from tipoff.scenes.faults import within
 from tipoff.scenes.rail_base import DrawnTable, HeldBySpans
 from tipoff.scenes.sections import dxf, step
 from tipoff.scenes.sections.outline import Loop, Outline, outline

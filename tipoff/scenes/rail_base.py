@@ -7,10 +7,10 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field, ValidationInfo, field_validator
 
+from tipoff.faults import Fault
 from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.mount_stiffness import MountStiffnessTable
 from tipoff.scenes.effects.structural_damping import DampingTable
-from tipoff.scenes.faults import Fault
 from tipoff.scenes.rounding import below
 from tipoff.scenes.table import Table, is_absent, limited
 from tipoff.scenes.units import (

@@ -3,10 +3,10 @@
 import json
 from functools import lru_cache
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import content_hash
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import LEAST, MOST, RailCompliance
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
 

@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from tipoff.faults import Fault, SceneError, close, kind_of
 from tipoff.files import read_input
 from tipoff.scenes import overrides, provenance, rail
-from tipoff.scenes.faults import Fault, SceneError, close, kind_of
 
 CATALOG = Path(__file__).resolve().parent / "catalog"
 _CHOICE = {"thrust": "kind", "contact": "law", "section": "shape"}

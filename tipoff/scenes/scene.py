@@ -20,6 +20,7 @@ from pydantic import (
     model_validator,
 )
 
+from tipoff.faults import Fault, SceneError, close
 from tipoff.files import content_hash
 from tipoff.mechanics.run_limits import MOST_SAMPLES
 from tipoff.scenes import (
@@ -48,7 +49,7 @@ from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.effects.thermal import ThermalTable
 from tipoff.scenes.effects.thrust import ThrustTable
 from tipoff.scenes.effects.thrust_offset import ThrustOffsetTable
-from tipoff.scenes.faults import Fault, SceneError, close, faults_of, within
+from tipoff.scenes.faults import faults_of, within
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.rail import RailTable
 from tipoff.scenes.studies import StudiesTable
@@ -308,7 +309,7 @@ def parse(
         >>> tipoff.parse({"name": "mine"})
         Traceback (most recent call last):
         ...
-        tipoff.scenes.faults.SceneError: 4 faults in the scene
+        tipoff.faults.SceneError: 4 faults in the scene
         ...
     """
     keys.require_shallow(raw, source)
@@ -372,11 +373,8 @@ def _reported(source: str, faults: _Faults) -> list[Fault]:
 
 
 def _tables(raw: Any) -> list[tuple[str, dict]]:
-    return (
-        [(name, table) for name, table in raw.items() if isinstance(table, dict)]
-        if isinstance(raw, dict)
-        else []
-    )
+    tables = raw if isinstance(raw, dict) else {}
+    return [(name, table) for name, table in tables.items() if isinstance(table, dict)]
 
 
 def _beside_faults(raw: dict, bare_numbers_are_si: bool, reported: _Faults) -> _Faults:

@@ -11,7 +11,7 @@ from typing import Any
 
 from tipoff.scenes import overrides, suggestions
 from tipoff.scenes.scene import Scene
-from tipoff.scenes.units import to_si
+from tipoff.units import to_si
 
 _NUMBER = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
 QUANTITY = rf"^(absent|\s*{_NUMBER}\s*[^\s\d.+-].*)$"

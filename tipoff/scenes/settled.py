@@ -2,10 +2,10 @@
 
 from typing import Any
 
+from tipoff.faults import Fault, SceneError
 from tipoff.mechanics.laws.initial import Initial
 from tipoff.scenes.effects import registry
 from tipoff.scenes.effects.spring import PushedTable
-from tipoff.scenes.faults import Fault, SceneError
 
 
 def is_settled(scene: Any) -> bool:

@@ -10,7 +10,7 @@ from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.scenes import launch
 from tipoff.scenes.effects.measured_table import MeasuredTable
 from tipoff.scenes.effects.spring import PushedTable
-from tipoff.scenes.units import duration
+from tipoff.units import duration
 
 if TYPE_CHECKING:
     from tipoff.plots import Figure

@@ -10,8 +10,8 @@ import tomllib
 from collections.abc import Iterator
 from typing import Any, get_args
 
+from tipoff.faults import MOST_NAMES, NO_SUCH_KEY, close
 from tipoff.scenes import overrides, pads, reading
-from tipoff.scenes.faults import MOST_NAMES, NO_SUCH_KEY, close
 from tipoff.scenes.table import Table
 
 _EXAMPLE = re.compile('for example "[^"]*"')

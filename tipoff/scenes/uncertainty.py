@@ -22,10 +22,11 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationError
 
+from tipoff.faults import Fault, SceneError, close
 from tipoff.scenes import overrides as keys
 from tipoff.scenes import reading
 from tipoff.scenes.distributions import BY_NAME, Distribution
-from tipoff.scenes.faults import Fault, SceneError, close, faults_of, renamed
+from tipoff.scenes.faults import faults_of, renamed
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.table import Table, at_least_one
 

@@ -3,9 +3,9 @@ another curve or rail than its scene."""
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.effects.thrust import MeasuredTable, ThrustTable
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import RailTable
 
 Tables = tuple[ThrustTable, RailTable]

@@ -85,8 +85,8 @@ def scenes(
     """
 
     def work() -> Output:
+        from tipoff.faults import Fault, SceneError, close
         from tipoff.scenes import catalog, load
-        from tipoff.scenes.faults import Fault, SceneError, close
         from tipoff.scenes.scene import CATALOG
         from tipoff.scenes.schema import schema as rules
 

@@ -6,7 +6,7 @@ import traceback
 from collections.abc import Callable
 from typing import TypeVar
 
-from tipoff.scenes.faults import InputError
+from tipoff.faults import InputError
 from tipoff.workspace.errors import StudyError
 from tipoff.workspace.progress import say
 

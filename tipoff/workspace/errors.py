@@ -1,6 +1,6 @@
 """Failures of studies, distinct from bad input and from errors of the program."""
 
-from tipoff.scenes.faults import SceneError
+from tipoff.faults import SceneError
 
 FAILED = ("diverged", "refused")  # statuses of a run that cannot be used
 

@@ -4,9 +4,9 @@ bad input."""
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from tipoff.faults import Fault, SceneError
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
-from tipoff.scenes.faults import Fault, SceneError
 
 _OWNERS = {
     "--calibration": SURROGATES,

@@ -52,7 +52,8 @@ def require(options: Any) -> None:
     rule."""
     from pydantic import TypeAdapter, ValidationError  # slow to load, as the scenes are
 
-    from tipoff.scenes.faults import Fault, SceneError, faults_of
+    from tipoff.faults import Fault, SceneError
+    from tipoff.scenes.faults import faults_of
 
     given = [
         (path, flag(path.rpartition(".")[2], hint), hint, value)

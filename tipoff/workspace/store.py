@@ -19,9 +19,9 @@ from concurrent.futures import as_completed
 from pathlib import Path
 
 from tipoff import cache
+from tipoff.faults import InputError
 from tipoff.files import discard
 from tipoff.results.trajectory import Trajectory, content
-from tipoff.scenes.faults import InputError
 from tipoff.workspace import kernel_marks
 from tipoff.workspace.attempt import attempt
 from tipoff.workspace.compiling import compile_ahead

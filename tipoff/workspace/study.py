@@ -15,12 +15,12 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from tipoff import cache, sources
+from tipoff.faults import Fault, SceneError
 from tipoff.files import content_hash, read_json
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import implausible
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.scene import Scene
 from tipoff.workspace import words

@@ -44,8 +44,8 @@ def _answer(request: Request, options: Options) -> Output:
 
 def _require(options: Options) -> None:
     """Raise SceneError for options that would have no effect, every fault listed."""
+    from tipoff.faults import Fault, SceneError
     from tipoff.mechanics.model_names import SPRINGS
-    from tipoff.scenes.faults import Fault, SceneError
 
     faults = []
     if options.draws is None and options.fine is not None:

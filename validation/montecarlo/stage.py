@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from tipoff.faults import together
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
-from tipoff.scenes.faults import together
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.limits import within
 from tipoff.studies.populations import answers, exceedance, population, random_factors, spread

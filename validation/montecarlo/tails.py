@@ -6,9 +6,9 @@ surrogate are counted by the number of contacts, and correct the statistics of a
 
 from pathlib import Path
 
+from tipoff.faults import Fault, SceneError, together
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.derived import Derived
-from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
 from tipoff.studies.populations import draws as paired

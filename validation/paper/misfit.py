@@ -16,9 +16,9 @@ import math
 
 import numpy as np
 
+from tipoff.faults import SceneError
 from tipoff.lowfi.ensemble.batch import Family
 from tipoff.lowfi.numerics import Numerics
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.studies import published
 from validation.paper import inputs

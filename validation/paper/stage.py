@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from tipoff import cache, sources
+from tipoff.faults import Fault, SceneError
 from tipoff.files import content_hash, write_text
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene, load
 from tipoff.studies import published

@@ -7,8 +7,8 @@ project. Tests compare today's numbers with them where a peer is not installed.
 from collections.abc import Iterable
 from pathlib import Path
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import read_json, write_json
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.workspace import machine
 from tipoff.workspace.progress import say
 from tipoff.workspace.study import StudyError

@@ -23,9 +23,9 @@ from typing import Any
 
 import numpy as np
 
+from tipoff.faults import SceneError
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.results.trajectory import Trajectory
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene
 from tipoff.studies.ablation.stage import Ablation

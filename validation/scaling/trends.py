@@ -12,11 +12,11 @@ import time
 from collections.abc import Callable, Sequence
 from functools import partial
 
+from tipoff.faults import SceneError
 from tipoff.lowfi.ensemble.batch import Family
 from tipoff.lowfi.ensemble.threads import PIECE, completed
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail_base import HeldBySpans
 from tipoff.scenes.scene import Scene
 from tipoff.workspace.compiling import warm_up

@@ -3,7 +3,7 @@
 import pytest
 
 from tipoff.comparison.curve_files.layout import Layout, of_options
-from tipoff.scenes.faults import SceneError
+from tipoff.faults import SceneError
 
 
 def test_a_text_is_for_all_files_or_for_one_and_that_of_one_wins():

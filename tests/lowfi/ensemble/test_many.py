@@ -7,11 +7,11 @@ import pytest
 from tests.lowfi.compliance import reference_compliance
 from tests.lowfi.support import PAPER_PAD, RAIL, G, scene
 from tipoff import lowfi
+from tipoff.faults import SceneError
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.batch import Family
 from tipoff.lowfi.numerics import Numerics
 from tipoff.scenes import load
-from tipoff.scenes.faults import SceneError
 from validation.bench.surrogate import varied
 
 LINEAR = {"law": "linear", "clearance": 1e-5, "stiffness": 7e7, "damping": 0.0}

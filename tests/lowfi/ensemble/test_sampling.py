@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from tipoff.faults import SceneError
 from tipoff.lowfi.ensemble import sampling
 from tipoff.lowfi.ensemble.rows import Drawn, numbers
 from tipoff.lowfi.ensemble.sampling import Points
 from tipoff.scenes import load, uncertainty
 from tipoff.scenes.distributions import BY_NAME
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.uncertainty import Uncertainty
 
 

@@ -4,10 +4,10 @@ bad headers that are refused at once."""
 import numpy as np
 import pytest
 
+from tipoff.faults import SceneError
 from tipoff.lowfi.ensemble.rows import numbers
 from tipoff.lowfi.ensemble.table import TableFile
-from tipoff.scenes.faults import SceneError
-from tipoff.scenes.units import to_si
+from tipoff.units import to_si
 
 AXIAL, MASS = "thrust_offset.misalignment.axial", "payload.mass"
 

@@ -8,8 +8,8 @@ import pytest
 
 from tests.studies.synthetic import flight
 from tipoff import scenes
+from tipoff.faults import SceneError
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
-from tipoff.scenes.faults import SceneError
 from tipoff.studies.agreement import distributions, refinement, verdicts
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.blind import page

@@ -6,7 +6,7 @@ import pytest
 from tests.studies.convergence import stub
 from tests.studies.synthetic import undrawn
 from tipoff import scenes
-from tipoff.scenes.faults import SceneError
+from tipoff.faults import SceneError
 from tipoff.studies import registry
 from tipoff.studies.convergence import page as convergence_page
 from tipoff.studies.convergence import stage as convergence

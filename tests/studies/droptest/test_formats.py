@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tests.studies.droptest.synthetic import EXIT, motion, sheet, spans
-from tipoff.scenes.faults import SceneError
+from tipoff.faults import SceneError
 from tipoff.scenes.instrument_table import PAGE
 from tipoff.studies.droptest import analysis
 from tipoff.studies.droptest.log import Calibrated

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tests.studies.droptest import synthetic
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 from tipoff.studies.droptest import analysis, log
 from tipoff.studies.droptest.frozen import frozen
 from tipoff.studies.droptest.sheet import SAMPLES

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from tipoff.scenes.faults import SceneError
+from tipoff.faults import SceneError
 from tipoff.studies.droptest import analysis
 from tipoff.studies.droptest.log import read, runs
 from tipoff.studies.droptest.sheet import SAMPLES

@@ -8,7 +8,7 @@ from scipy.stats import binom
 
 from tests.studies.droptest.sensor import Channel, Sensor
 from tests.studies.droptest.synthetic import INTERVAL, QUIET, log, motion, samples, sheet, spans
-from tipoff.scenes.faults import SceneError
+from tipoff.faults import SceneError
 from tipoff.studies.droptest import analysis
 from tipoff.studies.droptest.log import calibrated
 from tipoff.studies.droptest.reduction import reduced

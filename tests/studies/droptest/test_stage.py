@@ -12,9 +12,9 @@ from typer.testing import CliRunner
 from tests.studies.droptest.test_log import SHEET, TABLE
 from tests.studies.shown import html
 from tests.studies.synthetic import undrawn
+from tipoff.faults import SceneError
 from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.faults import SceneError
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.cli import app
 from tipoff.studies.droptest import page, stage

@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from tests.studies import free_flight
-from tipoff.scenes.faults import SceneError
+from tipoff.faults import SceneError
 from tipoff.studies.limits import certificate, page, stage
 from tipoff.studies.limits.certificate import Within
 from tipoff.studies.limits.constants import Margin

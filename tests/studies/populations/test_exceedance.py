@@ -6,7 +6,7 @@ import pytest
 from scipy import stats
 
 from tipoff.comparison import order_statistics
-from tipoff.scenes.faults import SceneError
+from tipoff.faults import SceneError
 from tipoff.studies.populations import exceedance
 from tipoff.studies.populations.exceedance import Limit
 

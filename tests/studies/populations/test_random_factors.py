@@ -6,9 +6,9 @@ import pytest
 from scipy import stats
 
 from tests.studies import free_flight
+from tipoff.faults import SceneError
 from tipoff.lowfi.ensemble.rows import numbers
 from tipoff.scenes import load
-from tipoff.scenes.faults import SceneError
 from tipoff.studies.populations import answers, population, random_factors, spread
 from tipoff.studies.populations.random_factors import ERRORS, READINGS
 from tipoff.studies.populations.reading import Reading

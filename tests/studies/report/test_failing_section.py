@@ -7,7 +7,7 @@ import typer
 from markupsafe import Markup
 
 from tipoff import scenes
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 from tipoff.studies import registry
 from tipoff.studies.commands.running import Output, guarded
 from tipoff.studies.question import Result

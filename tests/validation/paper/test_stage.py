@@ -13,9 +13,9 @@ from tests.studies.agreement.made import SPEEDUP, document, table
 from tests.studies.synthetic import undrawn
 from tests.validation.paper.searched import BASE, COUNT, SMALL, copied, page, shown, stub, studied
 from tipoff import lowfi, scenes
+from tipoff.faults import SceneError
 from tipoff.files import write_json
 from tipoff.lowfi.numerics import Numerics
-from tipoff.scenes.faults import SceneError
 from tipoff.studies import published
 from tipoff.studies.agreement import stage as compare
 from tipoff.workspace.progress import Interrupted

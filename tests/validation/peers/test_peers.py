@@ -11,10 +11,10 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+from tipoff.faults import SceneError
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets, read
 from tipoff.meshes import bricks
 from tipoff.scenes import load
-from tipoff.scenes.faults import SceneError
 from tipoff.studies.render import document
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study, StudyError

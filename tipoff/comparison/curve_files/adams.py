@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from tipoff.comparison.curve_files.table import Table, chosen
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 
 MARK = re.compile(rb"<Results[\s>]")
 _TIME = "time.TIME"

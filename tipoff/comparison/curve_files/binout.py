@@ -31,8 +31,8 @@ import numpy as np
 
 from tipoff.comparison.curve_files.lsdyna import NODOUT, RBDOUT, UNITS, table
 from tipoff.comparison.curve_files.table import Table, chosen
+from tipoff.faults import Fault, SceneError
 from tipoff.files import open_input
-from tipoff.scenes.faults import Fault, SceneError
 
 _HEADER = 8
 _CD, _DATA = 2, 3

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 from tipoff.comparison.curve_files.table import BODY, SCENE
-from tipoff.scenes.faults import Fault, SceneError, close
-from tipoff.scenes.units import duration, to_si
+from tipoff.faults import Fault, SceneError, close
+from tipoff.units import duration, to_si
 
 QUANTITIES = {
     "time": "s",

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.comparison.curve_files.table import SCENE, Table, chosen
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 
 NODOUT, RBDOUT = "nodout", "rbdout"
 _XYZ = ("x", "y", "z")

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError, close
 from tipoff.scenes.csv_file import Line, numbers
-from tipoff.scenes.faults import Fault, SceneError, close
 
 _SHOWN = 40  # names or bodies listed in a fault
 BODY, SCENE = "body", "scene"  # axes of rates

@@ -7,9 +7,9 @@ also in a comment; the unit of a column is in brackets after its name, or in the
 import re
 
 from tipoff.comparison.curve_files.table import Table
+from tipoff.faults import Fault, SceneError
 from tipoff.scenes import instrument_table
 from tipoff.scenes.csv_file import head
-from tipoff.scenes.faults import Fault, SceneError
 
 _COMMA = re.compile(r"(?<=\d),(?=\d)")
 

@@ -34,9 +34,9 @@ from tipoff.scenes.units import (
     PoissonRatio,
     PositiveLength,
     Pressure,
-    parse,
     sized,
 )
+from tipoff.units import parse
 
 EFFECT = Effect("contact")
 _Lengths = TypeVar("_Lengths", float, np.ndarray)

@@ -6,10 +6,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
+from tipoff.faults import Fault, SceneError
 from tipoff.mechanics.laws.friction import Friction
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.sticking import StickingTable
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rounding import at_most
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import NonNegativeNumber, PositiveVelocity

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Angle, Inclination, Length
 

@@ -7,10 +7,10 @@ The latch acts in both directions (``mechanics.laws.hold_down``).
 
 import math
 
+from tipoff.faults import Fault, SceneError
 from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.spring import PushedTable
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import NonNegativeForce
 

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.faults import SceneError
 from tipoff.files import read_input
 from tipoff.scenes import instrument_table
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.instrument_table import Written, head
 
 _COLUMNS = {"travel": "m", "force": "N"}

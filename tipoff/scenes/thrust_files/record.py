@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.faults import close
+from tipoff.faults import close
 from tipoff.scenes.instrument_table import PAGE
 
 SECTION = f"see {PAGE}, section Thrust"

@@ -10,8 +10,8 @@ from typing import NoReturn
 
 import numpy as np
 
+from tipoff.faults import SceneError
 from tipoff.scenes import instrument_table
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.instrument_table import Written, head, scale, stated, words
 from tipoff.scenes.thrust_files.record import SECTION, Choice, Record
 

@@ -16,10 +16,10 @@ from typing import Annotated
 
 import numpy as np
 
+from tipoff.faults import SceneError
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import settled
 from tipoff.scenes.effects.registry import EFFECTS
-from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.studies.render.column import Column
 from tipoff.workspace import machine

@@ -38,7 +38,7 @@ def _answer(request: Request, asked: Options) -> Output:
 
 def _require(asked: Options) -> None:
     """Raise SceneError for options that would have no effect, every fault listed."""
-    from tipoff.scenes.faults import Fault, SceneError
+    from tipoff.faults import Fault, SceneError
 
     given = {"--vary": asked.vary, "--seed": asked.seed}
     faults = [

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import tell
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.faults import Fault, SceneError
 
 
 def constants(path: Path | None, model: str, scene: str) -> Calibration | None:

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from tipoff.comparison.curve_files.layout import OF_THE_FORMAT, Layout, of_options
+from tipoff.faults import Fault, SceneError
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.names import NOMINAL
 from tipoff.studies.calibration import compliance, forecast
 from tipoff.workspace.progress import Board, say

@@ -56,7 +56,8 @@ def _beginning_with(incomplete: str) -> list[Path]:
 def in_millimetres(text: str) -> float:
     """A length with its unit, or a number of millimetres, in mm. Raises typer.BadParameter."""
     from tipoff.scenes.rounding import below
-    from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS, to_si
+    from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS
+    from tipoff.units import to_si
 
     try:
         value = float(text)

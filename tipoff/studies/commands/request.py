@@ -58,7 +58,7 @@ class Request:
     def require_the_scene_as_it_is(self) -> None:
         """Raise SceneError, every fault listed, for options that change the scene or its elements: a
         result that does not depend on these would ignore them."""
-        from tipoff.scenes.faults import Fault, SceneError
+        from tipoff.faults import Fault, SceneError
 
         given = {"--set": self.set_, "--element-size": self.element_size}
         expected = "none: the cases of this command have scenes and elements of their own"

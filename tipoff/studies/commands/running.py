@@ -45,9 +45,9 @@ def study_of(
     fault listed.
     """
     from tipoff import scenes
+    from tipoff.faults import Fault, SceneError
     from tipoff.highfi.rail.geometry import require_walls
     from tipoff.scenes import implausible, reading
-    from tipoff.scenes.faults import Fault, SceneError
     from tipoff.workspace.progress import say
     from tipoff.workspace.settings import defaults
     from tipoff.workspace.study import Study
@@ -93,9 +93,9 @@ def study_of(
 
 def _require_time(study) -> None:
     """Refuse a stated duration in which no payload can settle, before anything is compiled."""
+    from tipoff.faults import Fault, SceneError
     from tipoff.results import unfinished
-    from tipoff.scenes.faults import Fault, SceneError
-    from tipoff.scenes.units import duration
+    from tipoff.units import duration
 
     asked = {name: study.scene.condition(name) for name in study.conditions}
     faults: dict[tuple[str, str], Fault] = {}
@@ -132,7 +132,7 @@ def _replaced(changes: dict[str, str], study) -> list[str]:
 def _of_option(named: dict[str, str], work: Callable[[], _T]) -> _T:
     """The result of ``work``; its faults become faults of an option, with fields renamed by
     ``named``."""
-    from tipoff.scenes.faults import SceneError
+    from tipoff.faults import SceneError
 
     try:
         return work()
@@ -143,8 +143,8 @@ def _of_option(named: dict[str, str], work: Callable[[], _T]) -> _T:
 def quantity(option: str, text: str | None, unit: str, example: str) -> float | None:
     """The value of a ``text`` with unit, in ``unit``; None without a text. Raises SceneError, with an
     ``example``, for a text that is no quantity of this kind and for a negative value."""
-    from tipoff.scenes.faults import Fault, SceneError
-    from tipoff.scenes.units import to_si
+    from tipoff.faults import Fault, SceneError
+    from tipoff.units import to_si
 
     if text is None:
         return None
@@ -172,9 +172,9 @@ def guarded(work: Callable[[], Output], as_json: bool = False) -> None:
     Errors become a message on standard error and an exit code: 1 for a failed run and for a refusal
     of this machine, 2 for bad input, 130 for Ctrl-C.
     """
+    from tipoff.faults import InputError, SceneError
     from tipoff.files import remove_temporaries
     from tipoff.meshes.generator import GmshUnavailable
-    from tipoff.scenes.faults import InputError, SceneError
     from tipoff.workspace.study import StudyError
 
     try:

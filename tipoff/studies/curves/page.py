@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable, Sequence
 
-from tipoff.scenes.units import duration
 from tipoff.studies.curves.results import Compared, Drawn
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Table
+from tipoff.units import duration
 from tipoff.workspace.words import counted
 
 _LOOKS = ((VERMILION, "-"), (AMBER, "--"), (TEAL, "-."), (GREY, ":"))

@@ -9,9 +9,9 @@ import numpy as np
 from tipoff.comparison import metrics
 from tipoff.comparison.curve_files.layout import of_options
 from tipoff.comparison.curves import Curves
+from tipoff.faults import Fault, SceneError, together
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.scenes.names import NOMINAL
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.commands.running import quantity

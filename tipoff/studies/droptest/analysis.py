@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 from tipoff.studies.droptest import events as finding
 from tipoff.studies.droptest.channel_class import filtered
 from tipoff.studies.droptest.events import WINDOWS, Events, Spans, inside

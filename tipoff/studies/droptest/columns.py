@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import read_input
 from tipoff.scenes import instrument_table
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.instrument_table import Written
 from tipoff.studies.droptest.sampling import SECTION
 from tipoff.studies.droptest.sheet import Sheet, line

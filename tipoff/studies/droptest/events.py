@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 from tipoff.studies.droptest.channel_class import filtered, reach
 from tipoff.studies.droptest.log import Calibrated, runs
 from tipoff.studies.droptest.sampling import FALL

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 from tipoff.studies.droptest import columns, sampling
 from tipoff.studies.droptest import sheet as sheets
 from tipoff.studies.droptest.frozen import frozen

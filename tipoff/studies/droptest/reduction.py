@@ -37,7 +37,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy  # its parts load when they are first used
 
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 from tipoff.studies.droptest.events import Spans, inside
 from tipoff.studies.droptest.log import Calibrated
 from tipoff.studies.droptest.sheet import Sheet

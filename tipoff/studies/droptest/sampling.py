@@ -17,7 +17,7 @@ in the sheet nothing is searched in accelerations.
 
 import numpy as np
 
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.faults import Fault, SceneError
 from tipoff.scenes.instrument_table import PAGE
 from tipoff.studies.droptest.channel_class import SAMPLES_PER_CLASS
 from tipoff.studies.droptest.sheet import Sheet

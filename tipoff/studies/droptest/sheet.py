@@ -26,8 +26,9 @@ from pydantic import (
     model_validator,
 )
 
+from tipoff.faults import SceneError
 from tipoff.scenes import reading
-from tipoff.scenes.faults import SceneError, faults_of
+from tipoff.scenes.faults import faults_of
 from tipoff.scenes.instrument_table import scale, stated
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import (
@@ -38,10 +39,9 @@ from tipoff.scenes.units import (
     PositiveTime,
     Rate,
     Time,
-    parse,
     quantity,
-    to_si,
 )
+from tipoff.units import parse, to_si
 
 # sheets of the simulated logs that come with the package
 SAMPLES = sorted((Path(__file__).resolve().parent / "logs").glob("*.toml"))

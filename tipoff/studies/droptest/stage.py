@@ -13,12 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError, together
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.mechanics.instant import MOST, SETTLED, Instant
 from tipoff.scenes import uncertainty
-from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.scenes.scene import Scene
-from tipoff.scenes.units import duration
 from tipoff.studies.droptest import judgement, power, sheet, signals
 from tipoff.studies.droptest.analysis import Drop, analyse
 from tipoff.studies.droptest.events import WINDOWS
@@ -27,6 +26,7 @@ from tipoff.studies.droptest.reduction import COVERAGE
 from tipoff.studies.droptest.results import Cases, Compared, Curve, Droptest, Row, Together
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.populations.population import Population
+from tipoff.units import duration
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, StudyError
 

@@ -99,7 +99,7 @@ class Options:
 
     def require_one(self) -> None:
         """Raise SceneError for options that say nothing on one case, every fault listed."""
-        from tipoff.scenes.faults import Fault, SceneError
+        from tipoff.faults import Fault, SceneError
 
         given = {
             "--at": self.at,

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import write_json
 from tipoff.lowfi.ensemble import columns, twins
 from tipoff.lowfi.ensemble.batch import Case
@@ -24,7 +25,6 @@ from tipoff.mechanics.instant import Instant
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.results import hand_over
 from tipoff.scenes import implausible, uncertainty
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.ensemble import sensitivity, summary

@@ -52,7 +52,7 @@ class Asked:
 
     def asked(self, request: "Request") -> "tuple[Study, Options]":
         """The study of a ``request``, and the options of its stage. Raises SceneError."""
-        from tipoff.scenes.faults import together
+        from tipoff.faults import together
 
         kinds = (
             ("range", self.range_, "m", "500 m"),

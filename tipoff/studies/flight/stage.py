@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import write_netcdf
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
 from tipoff.scenes.effects.registry import body_forces
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.variation import Variations
 from tipoff.studies.flight import bodies, curves, flown, summary
 from tipoff.studies.flight.options import Options

@@ -20,8 +20,8 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.comparison import order_statistics
+from tipoff.faults import Fault, SceneError, together
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
-from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.studies.limits import certificate, constants, search, within
 from tipoff.studies.limits.certificate import Certificate
 from tipoff.studies.limits.options import Options

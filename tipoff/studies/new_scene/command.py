@@ -104,8 +104,8 @@ def new(
     both = bool(deployer and rocket)
 
     def work() -> Output:
+        from tipoff.faults import together
         from tipoff.files import write_text
-        from tipoff.scenes.faults import together
         from tipoff.studies.new_scene import template
 
         _, text = together(
@@ -134,8 +134,8 @@ def _from_catalogue(
 ) -> str:
     """The scene of a ``kind`` of the catalogue; files that it names are written beside ``file``. Raises
     SceneError, every fault listed."""
+    from tipoff.faults import SceneError
     from tipoff.files import write_text
-    from tipoff.scenes.faults import SceneError
     from tipoff.studies.new_scene import from_catalogue, template
 
     like = from_catalogue.KINDS[kind]
@@ -180,8 +180,8 @@ def _require_scene(text: str, file: Path) -> None:
 
 def _require_new(file: Path) -> None:
     """Raise SceneError if the file exists or does not end in .toml."""
+    from tipoff.faults import Fault, SceneError
     from tipoff.scenes import names
-    from tipoff.scenes.faults import Fault, SceneError
 
     faults = []
     if file.suffix != ".toml":
@@ -208,7 +208,7 @@ def _next(found: dict) -> list[str]:
 
 def _numbers(given: dict[str, str | None], thrust_curve: Path | None, pads: int | None):
     """The numbers of the new scene in SI. Raises SceneError, every fault listed."""
-    from tipoff.scenes.faults import Fault, SceneError, together
+    from tipoff.faults import Fault, SceneError, together
     from tipoff.studies.new_scene.template import Numbers
 
     def read(name: str):
@@ -235,7 +235,7 @@ def _numbers(given: dict[str, str | None], thrust_curve: Path | None, pads: int 
 def _require_curve(file: Path | None, given: dict[str, str | None]) -> None:
     """Raise SceneError for an invalid curve of the thrust, or one beside the options that it
     replaces."""
-    from tipoff.scenes.faults import Fault, SceneError
+    from tipoff.faults import Fault, SceneError
     from tipoff.studies.new_scene import template
 
     if file is None:
@@ -251,7 +251,7 @@ def _require_curve(file: Path | None, given: dict[str, str | None]) -> None:
 
 def _require_pads(pads: int | None) -> None:
     """Raise SceneError for a number of pads that does not fit on the rails."""
-    from tipoff.scenes.faults import SceneError
+    from tipoff.faults import SceneError
     from tipoff.studies.new_scene import template
 
     if pads is not None and (faults := template.pads_faults(pads)):

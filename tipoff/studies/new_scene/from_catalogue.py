@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 import tomlkit
 
+from tipoff.faults import Fault, SceneError
 from tipoff.files import read_input
 from tipoff.scenes import overrides
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import CATALOG, load
 
 GIVEN = "given to tipoff new"

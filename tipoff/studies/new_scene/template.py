@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 import tomlkit
 
+from tipoff.faults import Fault, SceneError
 from tipoff.scenes.effects.measured import is_of_a_clock, read_curve
-from tipoff.scenes.faults import Fault, SceneError
 
 _WIDTH = 0.2  # m, of the payload of the scene ``clamped``, whose sections are scaled
 _RAILS = 4  # one along each edge of the payload, with one pad at each station

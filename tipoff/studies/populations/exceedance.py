@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import betaincinv
 
-from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.units import to_si
+from tipoff.faults import Fault, SceneError
+from tipoff.units import to_si
 
 TOTAL = "total"
 _AXES = ("x", "y", "z", TOTAL)

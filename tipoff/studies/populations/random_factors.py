@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.faults import Fault, SceneError
 from tipoff.lowfi.ensemble.derived import Derived, Numbers, around_zero, law
 from tipoff.scenes.distributions import Distribution
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.populations.reading import INTERFACE_FACTOR, Reading

@@ -9,9 +9,9 @@ from pydantic import BaseModel
 
 from tipoff.scenes import provenance as origin
 from tipoff.scenes.scene import Scene
-from tipoff.scenes.units import registry
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Table, number
+from tipoff.units import registry
 from tipoff.workspace.words import counted
 
 _SCALED = ("m", "s", "N", "Pa", "m/s", "Hz")

@@ -9,8 +9,8 @@ from typing import Any
 from pydantic_core import to_jsonable_python
 
 from tipoff import sources
+from tipoff.faults import InputError
 from tipoff.files import content_hash, write_text
-from tipoff.scenes.faults import InputError
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.question import Result

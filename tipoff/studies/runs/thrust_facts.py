@@ -9,8 +9,8 @@ from tipoff.scenes.effects.measured import GaussianFit
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.effects.thrust import GaussiansTable, GaussianTable
 from tipoff.scenes.scene import Scene
-from tipoff.scenes.units import duration
 from tipoff.studies.render.table import Table
+from tipoff.units import duration
 
 
 def thrust_facts(scene: Scene) -> Table:

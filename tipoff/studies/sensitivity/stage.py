@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from tipoff.faults import together
 from tipoff.lowfi.ensemble.rows import Listed
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
-from tipoff.scenes.faults import together
 from tipoff.studies import published
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate

@@ -21,6 +21,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from tipoff.calibration.parameters import REFERENCE_PENETRATION
+from tipoff.faults import Fault, SceneError
 from tipoff.files import content_hash
 from tipoff.lowfi.ensemble.derived import friction
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
@@ -28,7 +29,7 @@ from tipoff.scenes import overrides as keys
 from tipoff.scenes import reading
 from tipoff.scenes.distributions import BY_NAME, Distribution
 from tipoff.scenes.effects.contact import LinearTable
-from tipoff.scenes.faults import Fault, SceneError, faults_of, renamed
+from tipoff.scenes.faults import faults_of, renamed
 from tipoff.scenes.scene import Scene
 
 DEFAULT = Path(__file__).with_name("tolerances.toml")

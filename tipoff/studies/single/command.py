@@ -93,8 +93,8 @@ def run(
       tipoff run --condition h4 --modes 20 --degree 3 --cells 16
       tipoff run --export rocketpy exit.json
     """
+    from tipoff.faults import Fault, SceneError, together
     from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
-    from tipoff.scenes.faults import Fault, SceneError, together
     from tipoff.scenes.names import NOMINAL
     from tipoff.studies.runs import page, stage
     from tipoff.studies.single import single

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
+from tipoff.faults import Fault, InputError, SceneError
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.mechanics import instant
 from tipoff.mechanics.estimates import stop
@@ -16,14 +17,13 @@ from tipoff.mechanics.rail_compliance import DEGREE
 from tipoff.results import hand_over
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import launch
-from tipoff.scenes.faults import Fault, InputError, SceneError
 from tipoff.scenes.scene import Scene, catalog
-from tipoff.scenes.units import duration
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.render.uncertain import uncertain
 from tipoff.studies.runs.results import Row
 from tipoff.studies.runs.stage import failure, row
+from tipoff.units import duration
 from tipoff.workspace import disturbed, models, words
 from tipoff.workspace.attempt import attempt
 from tipoff.workspace.disturbed import Disturbed

@@ -17,10 +17,10 @@ from tests.lowfi.contact.compliant.test_statics import (
     solved,
 )
 from tipoff import lowfi
+from tipoff.faults import SceneError
 from tipoff.lowfi import Numerics
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import step_limit
-from tipoff.scenes.faults import SceneError
 
 COUNT, FOUR = 5, Numerics(modes=4)
 DAMPED = {"rail.damping.ratios": [0.02, 0.01], "rail.damping.frequencies": [1e3, 5e3]}
