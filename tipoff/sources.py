@@ -25,11 +25,11 @@ LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "scikit-fem")  # they may ch
 # Modules that determine no number of a run: they read files to values, which the hash of a scene has, or
 # make words of a scene or of a run.
 READERS = (
-    "tipoff.faults",
+    *("tipoff.faults", "tipoff.formats.csv_file", "tipoff.formats.instrument_table"),
     *(
         f"tipoff.scenes.{name}"
         for name in (
-            *("csv_file", "faults", "instrument_table", "names", "pads", "plausibility"),
+            *("faults", "names", "pads", "plausibility"),
             *("plausible_ranges", "provenance", "reading", "roles", "sections.dxf"),
             *("sections.part21", "sections.step", "sections.step_solid", "shown", "sinking"),
             *("suggestions", "thrust_files.rasp", "thrust_files.reader", "thrust_files.record"),

@@ -13,7 +13,7 @@ import numpy as np
 
 from tipoff import units
 from tipoff.faults import Fault, SceneError
-from tipoff.scenes import csv_file
+from tipoff.formats import csv_file
 from tipoff.scenes import overrides as keys
 from tipoff.scenes.scene import Scene
 

@@ -4,7 +4,8 @@ import pytest
 
 from tests.scenes.support import refused, small, write
 from tipoff.faults import Fault, SceneError, close, kind_of
-from tipoff.scenes import csv_file, parse
+from tipoff.formats import csv_file
+from tipoff.scenes import parse
 
 
 def test_a_bad_column_is_a_short_message(tmp_path):

@@ -7,9 +7,9 @@ import pytest
 
 from tests.scenes.support import CONTACT, refused, small
 from tipoff.files import MOST_TEXT
+from tipoff.formats.csv_file import MOST_LINES, listed
 from tipoff.scenes import SceneError, load, parse, uncertainty
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.csv_file import MOST_LINES, listed
 from tipoff.scenes.overrides import DEEPEST
 from tipoff.scenes.scene import CATALOG
 from tipoff.scenes.table import MOST

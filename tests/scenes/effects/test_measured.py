@@ -3,7 +3,8 @@
 import pytest
 
 from tests.scenes.support import refused, small, write
-from tipoff.scenes import csv_file, parse
+from tipoff.formats import csv_file
+from tipoff.scenes import parse
 
 pytestmark = pytest.mark.case("X19")
 

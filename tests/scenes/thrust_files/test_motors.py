@@ -6,7 +6,7 @@ import codecs
 import pytest
 
 from tests.scenes.thrust_files.support import points, refusal, thrust
-from tipoff.scenes.instrument_table import PAGE
+from tipoff.formats.instrument_table import PAGE
 
 # As in the collection of RocketPy; its documentation states 6026.35 N s and a peak of 2200 N.
 M1670 = """M1670-BS 75 757 0 3.101 5.231 CTI

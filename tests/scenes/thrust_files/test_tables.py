@@ -4,8 +4,8 @@ import pytest
 
 from tests.scenes.support import small
 from tests.scenes.thrust_files.support import points, refusal, thrust
+from tipoff.formats.instrument_table import PAGE
 from tipoff.scenes import parse
-from tipoff.scenes.instrument_table import PAGE
 
 LBF = 4.4482216152605
 ROCKETPY = "0,0\n0.1200,2600.0000\n0.2100,2482.0000\n3.0000,0.0000\n"  # of Cesaroni_7450M2505-P

@@ -6,7 +6,7 @@ import pytest
 
 from tests.studies.droptest.synthetic import EXIT, motion, sheet, spans
 from tipoff.faults import SceneError
-from tipoff.scenes.instrument_table import PAGE
+from tipoff.formats.instrument_table import PAGE
 from tipoff.studies.droptest import analysis
 from tipoff.studies.droptest.log import Calibrated
 from tipoff.studies.droptest.reduction import reduced

@@ -17,9 +17,9 @@ from tipoff.comparison.curve_files.layout import LENGTH, OF_THE_FORMAT, QUANTITI
 from tipoff.comparison.curve_files.table import BODY, SCENE, Table
 from tipoff.faults import Fault, SceneError
 from tipoff.files import MOST_TEXT, open_input, read_input
+from tipoff.formats.csv_file import factor_to_si
 from tipoff.kernels.jit import njit
 from tipoff.kernels.rotation import matrix, step, unrotate
-from tipoff.scenes.csv_file import factor_to_si
 
 MOST_BYTES = 2**27  # of a text file of LS-DYNA or Adams; of these only some columns are kept
 _HDF5 = b"\x89HDF\r\n\x1a\n"

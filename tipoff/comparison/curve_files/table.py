@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.faults import Fault, SceneError, close
-from tipoff.scenes.csv_file import Line, numbers
+from tipoff.formats.csv_file import Line, numbers
 
 _SHOWN = 40  # names or bodies listed in a fault
 BODY, SCENE = "body", "scene"  # axes of rates

@@ -8,8 +8,8 @@ import re
 
 from tipoff.comparison.curve_files.table import Table
 from tipoff.faults import Fault, SceneError
-from tipoff.scenes import instrument_table
-from tipoff.scenes.csv_file import head
+from tipoff.formats import instrument_table
+from tipoff.formats.csv_file import head
 
 _COMMA = re.compile(r"(?<=\d),(?=\d)")
 
@@ -23,7 +23,7 @@ def read(source: str, data: bytes, wanted: set[str]) -> Table:
         known = sum(not asked.isdisjoint(_spellings(cell)) for cell in cells)
         return known or 0.5 * (not any(map(instrument_table.is_unit, filter(None, cells))))
 
-    table = instrument_table.read(source, data, likeness, is_loose=True)
+    table = instrument_table.read_table(source, data, likeness, is_loose=True)
     if not table.rows:
         given, words = "no line of numbers", "a table with times in a column"
         raise SceneError([Fault(source, "file", given, words)])

@@ -7,8 +7,8 @@ import numpy as np
 
 from tipoff.faults import SceneError
 from tipoff.files import read_input
-from tipoff.scenes import instrument_table
-from tipoff.scenes.instrument_table import Written, head
+from tipoff.formats import instrument_table
+from tipoff.formats.instrument_table import Written, head
 
 _COLUMNS = {"travel": "m", "force": "N"}
 
@@ -27,7 +27,7 @@ class Push(NamedTuple):
 
 def read_push(path: str) -> Push:
     """Read a table with the columns ``travel`` and ``force`` and their units, as a spreadsheet of any
-    country writes it (``scenes.instrument_table``). Raises ValueError with every fault of the table."""
+    country writes it (``formats.instrument_table``). Raises ValueError with every fault of the table."""
     try:
         data = read_input(path)
     except OSError as error:
@@ -39,7 +39,7 @@ def read_push(path: str) -> Push:
 @lru_cache(maxsize=4)
 def _parsed(path: str, data: bytes) -> Push:
     try:
-        table = instrument_table.read(path, data, _likeness)
+        table = instrument_table.read_table(path, data, _likeness)
     except SceneError as error:
         raise ValueError(f"{error.faults[0].expected} ({error.faults[0].given})") from error
     columns, wrong = _columns(path, table)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.faults import close
-from tipoff.scenes.instrument_table import PAGE
+from tipoff.formats.instrument_table import PAGE
 
 SECTION = f"see {PAGE}, section Thrust"
 _LISTED = 20  # names of motors in a message

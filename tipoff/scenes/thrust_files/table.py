@@ -11,8 +11,8 @@ from typing import NoReturn
 import numpy as np
 
 from tipoff.faults import SceneError
-from tipoff.scenes import instrument_table
-from tipoff.scenes.instrument_table import Written, head, scale, stated, words
+from tipoff.formats import instrument_table
+from tipoff.formats.instrument_table import Written, head, scale, stated, words
 from tipoff.scenes.thrust_files.record import SECTION, Choice, Record
 
 _HOUSE = ["time_s", "force_N"]
@@ -31,7 +31,7 @@ def read(path: str, data: bytes, choice: Choice) -> Record:
         return all(_candidates(table, kind, named[kind]) for kind in _NAMES)
 
     try:
-        table = instrument_table.read(path, data, is_header)
+        table = instrument_table.read_table(path, data, is_header)
     except SceneError as error:
         raise ValueError(f"{error.faults[0].expected} ({error.faults[0].given})") from error
     places = [_place(table, kind, named[kind]) for kind in _NAMES]

@@ -21,7 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.faults import Fault, SceneError
-from tipoff.studies.droptest import columns, sampling
+from tipoff.formats.logs.sensor_log import read_sensor_log
+from tipoff.studies.droptest import sampling
 from tipoff.studies.droptest import sheet as sheets
 from tipoff.studies.droptest.frozen import frozen
 from tipoff.studies.droptest.quantisation import steps
@@ -29,6 +30,7 @@ from tipoff.studies.droptest.saturation import saturated
 from tipoff.studies.droptest.sheet import Sheet
 from tipoff.workspace.words import counted
 
+_FEWEST = 100  # samples
 _BRIDGED = 2  # missing samples that a straight line may replace
 _JITTER = 0.01  # of an interval: a smaller jitter is rounding of the clock and stays
 _UNEVEN = 0.45  # of an interval: with more jitter the instant of a sample is not clear
@@ -74,7 +76,10 @@ def read(path: str | Path) -> tuple[Sheet, Log]:
     coarser. Raises SceneError listing every fault of either."""
     sheet = sheets.load(path)
     source = Path(path).parent / sheet.file
-    values, notes = columns.read(source, sheet)
+    values, notes = read_sensor_log(source, sheet.columns.names(), dict(sheet.units))
+    if len(values["time"]) < _FEWEST:
+        given = counted(len(values["time"]), "sample")
+        raise _fault(str(source), given, f"at least {_FEWEST}", "file")
     stated = sheet.gyro.resolution
     axes = {"rate": steps(values["rate"], stated)}
     if "acceleration" in values:

@@ -18,12 +18,11 @@ in the sheet nothing is searched in accelerations.
 import numpy as np
 
 from tipoff.faults import Fault, SceneError
-from tipoff.scenes.instrument_table import PAGE
+from tipoff.formats.logs.sensor_log import SECTION
 from tipoff.studies.droptest.channel_class import SAMPLES_PER_CLASS
 from tipoff.studies.droptest.sheet import Sheet
 
 FALL = 0.05  # s of free fall; a knock is shorter
-SECTION = f"see {PAGE}, section Sensor logs"
 _IN_WINDOW, _IN_EVENT = 10, 5  # samples
 _ROUNDING = 1e-6  # relative, of an interval
 

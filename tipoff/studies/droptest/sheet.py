@@ -27,9 +27,9 @@ from pydantic import (
 )
 
 from tipoff.faults import SceneError
+from tipoff.formats.logs.sensor_log import zero_and_one
 from tipoff.scenes import reading
 from tipoff.scenes.faults import faults_of
-from tipoff.scenes.instrument_table import scale, stated
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import (
     Acceleration,
@@ -71,19 +71,10 @@ DriftError = Annotated[float, *_in("rad/s/K", ge=0.0)]
 
 def _unit_of(si: str) -> AfterValidator:
     def check(text: str) -> str:
-        line(text, si)
+        zero_and_one(text, si)
         return text
 
     return AfterValidator(check)
-
-
-def line(unit: str, si: str, is_header: bool = False) -> tuple[float, float]:
-    """Zero and one of a column in ``si``; a unit that is not in a header may have a number
-    (``instrument_table.stated``). Raises ValueError."""
-    if si != "K":
-        return 0.0, scale(unit, si) if is_header else stated(unit, si)
-    # degC has an offset
-    return to_si(f"0 {unit}", si, absolute=True), to_si(f"1 {unit}", si, absolute=True)
 
 
 def _temperature(value: Any, info: ValidationInfo) -> float:
@@ -100,6 +91,15 @@ class Columns(Table):
     rate: _Triple[str]
     acceleration: _Triple[str] | None = None
     temperature: str | None = None
+
+    def names(self) -> dict[str, tuple[str, ...]]:
+        """The names by quantity, none of an absent one."""
+        return {
+            "time": (self.time,) if self.time else (),
+            "rate": self.rate,
+            "acceleration": self.acceleration or (),
+            "temperature": (self.temperature,) if self.temperature else (),
+        }
 
 
 class Units(Table):

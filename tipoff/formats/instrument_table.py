@@ -20,8 +20,8 @@ import numpy as np
 
 from tipoff import units
 from tipoff.faults import Fault
-from tipoff.scenes import csv_file
-from tipoff.scenes.csv_file import Line
+from tipoff.formats import csv_file
+from tipoff.formats.csv_file import Line
 
 PAGE = "docs/reference/file_formats.md"
 _MARKS = ("#", "%", "!", "//", ";")  # of comment lines; a separator is no mark
@@ -96,7 +96,7 @@ class Written(NamedTuple):
         return [values for values, _ in found], [fault for _, wrong in found for fault in wrong]
 
 
-def read(
+def read_table(
     path: str | Path, data: bytes, likeness: Callable[[list[str]], float], is_loose: bool = False
 ) -> Written:
     """The table in ``data``, the content of a file. The header is the line above the numbers, also

@@ -1,37 +1,31 @@
-"""The columns of a log in SI. Their names are in the sheet; their units are in the header of the log
-or in the sheet."""
+"""The columns of a log in SI. Their names are given; their units are in the header of the log or
+given too."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from tipoff.faults import Fault, SceneError
 from tipoff.files import read_input
-from tipoff.scenes import instrument_table
-from tipoff.scenes.instrument_table import Written
-from tipoff.studies.droptest.sampling import SECTION
-from tipoff.studies.droptest.sheet import Sheet, line
-from tipoff.workspace.words import counted
+from tipoff.formats.instrument_table import PAGE, Written, read_table, scale, stated
+from tipoff.units import to_si
 
+SECTION = f"see {PAGE}, section Sensor logs"
 _SI = {"time": "s", "rate": "rad/s", "acceleration": "m/s**2", "temperature": "K"}
-_FEWEST = 100  # samples
 _SHOWN = 300  # characters of a header in a message
 _CLOCK = 1e6  # s: larger times count from the epoch of a clock
 
 
-def read(path: Path, sheet: Sheet) -> tuple[dict[str, np.ndarray], list[str]]:
-    """Time (n,1) s, rate (n,3) rad/s, and, if the sheet has them, acceleration (n,3) m/s2 and
-    temperature (n,1) K, with NaN in empty cells; notes. Raises SceneError with every fault."""
-    names = sheet.columns
-    groups: dict[str, tuple[str, ...]] = {
-        "time": (names.time,) if names.time else (),
-        "rate": names.rate,
-        "acceleration": names.acceleration or (),
-        "temperature": (names.temperature,) if names.temperature else (),
-    }
-    table = _table(path, groups)
+def read_sensor_log(
+    path: Path, names: Mapping[str, tuple[str, ...]], units: Mapping[str, str | None]
+) -> tuple[dict[str, np.ndarray], list[str]]:
+    """Time (n,1) s, rate (n,3) rad/s, and, if they have ``names`` of columns, acceleration (n,3) m/s2 and
+    temperature (n,1) K, with NaN in empty cells; notes. A time without a name is the only column that is
+    named like one. ``units``: those that are given, None for others. Raises SceneError with every fault."""
+    table = _table(path, names)
     source, faults, places = str(path), [], {}
-    for group, wanted in groups.items():
+    for group, wanted in names.items():
         if group == "time" and not wanted:
             places[group], wrong = _times(table, source)
         elif wanted:
@@ -41,19 +35,24 @@ def read(path: Path, sheet: Sheet) -> tuple[dict[str, np.ndarray], list[str]]:
         faults += wrong
     lines = {}
     for group, found in places.items():
-        stated = getattr(sheet.units, group)
-        lines[group], wrong = _units(table, source, group, (found, stated))
+        lines[group], wrong = _units(table, source, group, (found, units[group]))
         faults += wrong
     columns, wrong = table.numbers(source, [k for found in places.values() for k in found], True)
     if faults + wrong:
         raise SceneError(faults + wrong)
-    if len(table.rows) < _FEWEST:
-        given = counted(len(table.rows), "sample")
-        raise SceneError([Fault(source, "file", given, f"at least {_FEWEST}")])
     return _in_si(dict(zip(places, _split(columns, places))), lines)
 
 
-def _table(path: Path, groups: dict[str, tuple[str, ...]]) -> Written:
+def zero_and_one(unit: str, si: str, is_header: bool = False) -> tuple[float, float]:
+    """Zero and one of a column in ``si``; a unit that is not in a header may have a number
+    (``instrument_table.stated``). Raises ValueError."""
+    if si != "K":
+        return 0.0, scale(unit, si) if is_header else stated(unit, si)
+    # degC has an offset
+    return to_si(f"0 {unit}", si, absolute=True), to_si(f"1 {unit}", si, absolute=True)
+
+
+def _table(path: Path, groups: Mapping[str, tuple[str, ...]]) -> Written:
     """The header is the line that has most of the wanted columns."""
     wanted = [(name, _SI[group]) for group, names in groups.items() for name in names]
 
@@ -66,7 +65,7 @@ def _table(path: Path, groups: dict[str, tuple[str, ...]]) -> Written:
     except OSError as error:
         given = error.strerror or str(error)
         raise SceneError([Fault(str(path), "file", given, "a readable CSV file")]) from error
-    return instrument_table.read(path, data, likeness)
+    return read_table(path, data, likeness)
 
 
 def _places(
@@ -102,13 +101,13 @@ def _units(
     table: Written, source: str, group: str, asked: tuple[list[int], str | None]
 ) -> tuple[list[tuple[float, float]], list[Fault]]:
     """Zero and one in SI of each column, from the header and the unit of the sheet."""
-    si, key, (places, stated) = _SI[group], f"units.{group}", asked
+    si, key, (places, unit_given) = _SI[group], f"units.{group}", asked
     lines, faults = [], []
-    given = None if stated is None else line(stated, si)
+    given = None if unit_given is None else zero_and_one(unit_given, si)
     for place in places:
         name, unit = table.names()[place], table.unit(place, si)
         try:
-            found = None if unit is None else line(unit, si, True)
+            found = None if unit is None else zero_and_one(unit, si, True)
         except ValueError as error:
             found = None
             if given is None:
@@ -121,7 +120,7 @@ def _units(
             faults.append(Fault(source, key, "no unit", expected))
         elif found is not None and given is not None and not np.allclose(found, given, 1e-9, 0.0):
             expected = f"the unit {unit!r} of {name} in the header; {SECTION}"
-            faults.append(Fault(source, key, repr(stated), expected))
+            faults.append(Fault(source, key, repr(unit_given), expected))
         else:
             lines.append(given or found or (0.0, 1.0))
     return lines, faults
@@ -141,7 +140,7 @@ def _in_si(
 ) -> tuple[dict[str, np.ndarray], list[str]]:
     """Values in SI. Times of a clock count from the first sample: they have too many digits."""
     notes, ((_, second),) = [], lines["time"]
-    first = raw["time"][0, 0]
+    first = raw["time"][:1, 0].sum()  # 0 without a sample
     if abs(first * second) > _CLOCK:
         raw["time"] = raw["time"] - first
         notes.append(f"times count from the first sample, {first * second:.6f} s of its clock")

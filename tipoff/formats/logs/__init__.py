@@ -1,0 +1,1 @@
+"""Logs of sensors: tables of text whose columns a sheet names."""
