@@ -8,8 +8,8 @@ import pytest
 
 from tipoff import files, scenes
 from tipoff.comparison.curve_files import reading
+from tipoff.formats.sections import dxf
 from tipoff.lowfi.ensemble.table import TableFile
-from tipoff.scenes.sections import dxf
 
 
 def test_an_error_of_writing_names_the_file(tmp_path):

@@ -157,8 +157,8 @@ def runs() -> list[str]:
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [
-        ("scenes/sections/dxf.py", "LINE, ARC and LWPOLYLINE are read", "Other words"),
-        ("scenes/thrust_files/rasp.py", "raise ValueError", "raise TypeError"),
+        ("formats/sections/dxf.py", "LINE, ARC and LWPOLYLINE are read", "Other words"),
+        ("formats/thrusts/rasp.py", "raise ValueError", "raise TypeError"),
         ("scenes/suggestions.py", "def ", "def _other(): pass\n\n\ndef "),
         ("results/unfinished.py", "stuck on the rail", "held"),
         ("scenes/effects/thermal.py", "Mean change of temperature", "Other words"),
@@ -182,7 +182,7 @@ def test_words_and_readers_forget_no_run(project, file, old, new):
         ("scenes/effects/spring.py", "last = max(self.preload", "last = min(self.preload", RUNS),
         ("scenes/scene_model.py", "pad.length / 2", "pad.length / 3", RUNS),
         ("mechanics/estimates/ends.py", "_MARGIN = 1.25", "_MARGIN = 1.5", RUNS),
-        ("scenes/sections/outline.py", "SAME = ", "OTHER = SAME = ", RUNS),
+        ("formats/outline.py", "SAME = ", "OTHER = SAME = ", RUNS),
         ("lowfi/dynamics/step.py", "_GROW = 0.9", "_GROW = 0.8", RUNS[1:2]),
     ],
 )

@@ -22,22 +22,30 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "tipoff"
 WITH_CODE = (PACKAGE, "tests", "validation")  # the last two also have kernels
 LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "scikit-fem")  # they may change last bits
-# Modules that determine no number of a run: they read files to values, which the hash of a scene has, or
-# make words of a scene or of a run.
+# Modules, and packages with all of their modules, that determine no number of a run: they read files to
+# values, which the hash of a scene has, or make words of a scene or of a run.
 READERS = (
-    *("tipoff.faults", "tipoff.formats.csv_file", "tipoff.formats.instrument_table"),
+    "tipoff.faults",
+    *(f"tipoff.formats.{name}" for name in ("csv_file", "instrument_table", "sections", "thrusts")),
     *(
         f"tipoff.scenes.{name}"
         for name in (
-            *("faults", "names", "pads", "plausibility"),
-            *("plausible_ranges", "provenance", "reading", "roles", "sections.dxf"),
-            *("sections.part21", "sections.step", "sections.step_solid", "shown", "sinking"),
-            *("suggestions", "thrust_files.rasp", "thrust_files.reader", "thrust_files.record"),
-            *("thrust_files.rocksim", "thrust_files.table", "thrust_plausibility", "unchanged"),
+            *(
+                "faults",
+                "names",
+                "pads",
+                "plausibility",
+                "plausible_ranges",
+                "provenance",
+                "reading",
+            ),
+            *("roles", "shown", "sinking", "suggestions", "thrust_plausibility", "unchanged"),
         )
     ),
     *("tipoff.results.hand_over", "tipoff.results.shown"),
 )
+# A module that imports this function depends on all modules of its folder.
+_LISTS_A_FOLDER = "tipoff.formats.declared.declared"
 # Inputs of a Source besides its file: syntax trees differ between versions of Python.
 _RULES = content_hash(sys.version_info[:2], Path(__file__).read_text(encoding="utf-8"))
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
@@ -94,13 +102,15 @@ def version(library: str) -> str:
 
 def closure(*modules: str, without: tuple[str, ...] = ()) -> list[str]:
     """Dotted names of ``modules`` and of all modules of the project on which they depend, in
-    alphabetical order. Those in ``without``, and what only they need, are left out. Raises
+    alphabetical order. Those in ``without``, those in packages in it, and what only they need, are left
+    out. Raises
     ModuleNotFoundError for a module that the project does not have."""
     found: set[str] = set()
+    left_out = tuple(f"{name}." for name in without)
     waiting = list(modules)
     while waiting:
         name = waiting.pop()
-        if name in found or name in without:
+        if name in found or name.startswith(left_out) or f"{name}." in left_out:
             continue
         if path(name) is None:
             raise ModuleNotFoundError(f"the project has no module {name}")
@@ -111,8 +121,15 @@ def closure(*modules: str, without: tuple[str, ...] = ()) -> list[str]:
 
 @functools.cache
 def used_by(module: str) -> frozenset[str]:
-    """Dotted names of the modules of the project that ``module`` imports directly."""
-    return frozenset(used for used in map(_module, source(module).imports) if used)
+    """Dotted names of the modules of the project that ``module`` imports directly, also by the list of a
+    folder."""
+    imports = source(module).imports
+    found = {used for used in map(_module, imports) if used}
+    if _LISTS_A_FOLDER in imports:
+        package, file = module.rpartition(".")[0], path(module)
+        assert file is not None
+        found |= {f"{package}.{each.stem}" for each in file.parent.glob("[!_]*.py")} - {module}
+    return frozenset(found)
 
 
 @functools.cache  # digests of commands ask for each file many times

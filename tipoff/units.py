@@ -40,6 +40,9 @@ COMMON_FACTORS = {
     "N/m**1.5": {"N/mm**1.5": 1e3**1.5},
 }
 
+# Units of lengths, in metres, that a scene states for a file of another program.
+LENGTHS_OF_FILES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
+
 _LOADING = threading.Lock()
 
 

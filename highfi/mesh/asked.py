@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.scenes.rail import MeshTable, directions
-from tipoff.scenes.sections.paths import UNITS
+from tipoff.units import LENGTHS_OF_FILES
 
 
 class Asked(NamedTuple):
@@ -30,7 +30,7 @@ class Asked(NamedTuple):
         """Points (n,3) m in scene axes. Those of a file in scene axes keep every bit."""
         if self[:3] == Asked()[:3]:
             return points
-        return (UNITS[self.unit] * points - np.array(self.origin)) @ np.array(
+        return (LENGTHS_OF_FILES[self.unit] * points - np.array(self.origin)) @ np.array(
             directions(self.axes)
         ).T
 

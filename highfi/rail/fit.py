@@ -22,7 +22,7 @@ from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail import GeometryTable, MeshTable, SectionTable
 from tipoff.scenes.rounding import apart
 from tipoff.scenes.scene import Scene
-from tipoff.scenes.sections.paths import UNITS
+from tipoff.units import LENGTHS_OF_FILES
 
 # Degrees. Both solvers measure penetration along an axis of the scene, not along the normal of the
 # wall. This makes pads stiffer by the square of half the slope: 0.2 % here.
@@ -74,10 +74,10 @@ def _unit(rail: MeshTable | GeometryTable, lengths: np.ndarray) -> tuple[str, bo
     (empty for none), and whether the length that equals the rail's is along X."""
     longest = int(lengths.argmax())
     ratio = lengths[longest] / (rail.end - rail.start)
-    own = UNITS[getattr(rail, "unit", None) or "m"]
+    own = LENGTHS_OF_FILES[getattr(rail, "unit", None) or "m"]
     units = [
         name
-        for name, scale in UNITS.items()
+        for name, scale in LENGTHS_OF_FILES.items()
         if scale != own and abs(ratio * scale / own - 1.0) < _LIKE
     ]
     is_known = bool(units) or abs(ratio - 1.0) < _LIKE

@@ -2,11 +2,11 @@
 the pads."""
 
 from tipoff.faults import Fault, SceneError
+from tipoff.formats.outline import SAME
 from tipoff.meshes.profile import Profile
 from tipoff.scenes import scene_model
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.scene import Scene
-from tipoff.scenes.sections.outline import SAME
 
 _FACING = 1e-6  # of a unit normal: sides that are turned less face along an axis
 

@@ -3,11 +3,11 @@
 import random
 from pathlib import Path
 
+from tests.formats.sections.step_text import prism
+from tests.formats.sections.test_dxf import arc, drawing, line, polyline
 from tests.fuzz import mutants
-from tests.scenes.sections.step_text import prism
-from tests.scenes.sections.test_dxf import arc, drawing, line, polyline
-from tests.scenes.sections.test_profile_rail import RAIL
 from tests.scenes.support import small
+from tests.scenes.test_profile_rail import RAIL
 from tipoff import scenes
 from tipoff.highfi.rail import profile_rail
 

@@ -4,8 +4,8 @@ and mirror images."""
 import numpy as np
 import pytest
 
-from tests.scenes.sections.support import SHAPES
-from tests.scenes.sections.test_outline import shape, table
+from tests.formats.test_outline import shape, table
+from tests.scenes.section_shapes import SHAPES
 from tipoff.highfi.extruded import mesh as extruded
 from tipoff.highfi.mesh import facets
 from tipoff.highfi.mesh.cells import jacobians

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
+from tipoff.formats.outline import SAME
 from tipoff.mechanics.laws.thermal import fields
 from tipoff.scenes import launch, plausible_ranges, sinking, thrust_plausibility
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail_base import HeldBySpans
 from tipoff.scenes.rounding import below
-from tipoff.scenes.sections.outline import SAME
 
 _WAVE_SPEED = (100.0, 10_000.0)
 _DENSITY = (10.0, 20_000.0)

@@ -6,7 +6,6 @@ pad at the clearance for which the section is drawn. The platform holds the side
 ``mounted``, on the stretches ``mounts``.
 """
 
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, PrivateAttr, Tag
@@ -14,11 +13,11 @@ from pydantic import model_validator as model
 
 from tipoff.faults import close
 from tipoff.files import content_hash
+from tipoff.formats.outline import Loop, Outline, outline
+from tipoff.formats.sections.reader import read_section
 from tipoff.scenes.faults import within
 from tipoff.scenes.rail_base import DrawnTable, HeldBySpans
-from tipoff.scenes.sections import dxf, step
-from tipoff.scenes.sections.outline import Loop, Outline, outline
-from tipoff.scenes.sections.shapes import SHAPES, ShapeTable
+from tipoff.scenes.section_shapes import SHAPES, ShapeTable
 from tipoff.scenes.table import at_least_one, is_absent, limited
 from tipoff.scenes.units import Length, quantity
 
@@ -92,9 +91,7 @@ class ProfileTable(HeldBySpans, DrawnTable):
 
     def _read(self) -> Outline:
         if isinstance(self.section, str):
-            if Path(self.section).suffix.lower() not in step.SUFFIXES:
-                return outline(dxf.loops(self.section, self.unit))
-            found = step.extrusion(self.section, self.unit)
+            found = read_section(self.section, self.unit)
             self._solid_length = found.length
             return outline(found.loops)
         if isinstance(self.section, tuple):

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.formats.test_outline import shape, table
 from tests.meshes.test_profile import MATERIAL, of
-from tests.scenes.sections.support import SHAPES
-from tests.scenes.sections.test_outline import shape, table
+from tests.scenes.section_shapes import SHAPES
 from tipoff import highfi
 from tipoff.highfi import compliance
 from tipoff.highfi.mesh.rail_mesh import read

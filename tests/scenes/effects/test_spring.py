@@ -7,11 +7,11 @@ import pytest
 
 from tests.scenes.support import refused, small, write
 from tipoff.faults import SceneError
+from tipoff.formats.push_table import read_push
 from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.mechanics.laws.pushers import energy_given_up
 from tipoff.scenes import launch, parse, scene_model
-from tipoff.scenes.effects.push_file import read_push
 from tipoff.scenes.variation import Variations
 
 SPRING = {"kind": "spring", "preload": "100 N", "rate": "2 N/mm", "stroke": "40 mm"}

@@ -11,8 +11,8 @@ import numpy as np
 import scipy  # its submodules load at their first use
 
 from tipoff.files import read_input
-from tipoff.scenes.thrust_files import reader
-from tipoff.scenes.thrust_files.record import ANYTHING, SECTION, Choice, Record
+from tipoff.formats.thrusts.reader import read_thrust
+from tipoff.formats.thrusts.record import ANYTHING, SECTION, Choice, Record
 
 FIT_IMPULSE = 0.02  # of the impulse of a curve: largest error of its fit by default
 _HIGHEST = 2.0  # times the largest measured force: the peak of a Gaussian that describes a curve
@@ -53,7 +53,7 @@ def read_curve(path: str | Path, choice: Choice = ANYTHING) -> MeasuredCurve:
 def read_record(
     path: str | Path, choice: Choice = ANYTHING, may_begin_early: bool = False
 ) -> tuple[MeasuredCurve, str]:
-    """The thrust over time in a file of a format in ``tipoff.scenes.thrust_files``, and what was
+    """The thrust over time in a file of a format in ``tipoff.formats.thrusts``, and what was
     read in words. A time in two points is a jump; times are negative only if the curve
     ``may_begin_early``. Raises ValueError with what is wrong."""
     try:
@@ -69,7 +69,7 @@ def read_record(
 def _parsed(
     path: str, data: bytes, choice: Choice, may_begin_early: bool
 ) -> tuple[MeasuredCurve, str]:
-    found = reader.read(path, data, choice)
+    found = read_thrust(path, data, choice)
     time, wrong = found.time, list(found.faults)
     for is_wrong, expected in _expected(found, may_begin_early):
         if is_wrong.any():

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
+from tipoff.formats.thrusts.record import Choice
 from tipoff.mechanics.laws.thrust import Curve, Pulses, Thrust
 from tipoff.scenes.effects import load_cell
 from tipoff.scenes.effects.load_cell import Levels
@@ -23,7 +24,6 @@ from tipoff.scenes.effects.timed import TimedTable
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import below
 from tipoff.scenes.table import is_absent, is_zero
-from tipoff.scenes.thrust_files.record import Choice
 from tipoff.scenes.units import Force, NonNegativeNumber, Time
 
 # keys whose effect is in the points

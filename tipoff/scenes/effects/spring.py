@@ -18,9 +18,9 @@ from pydantic import (
     model_validator,
 )
 
+from tipoff.formats.push_table import Push, read_push
 from tipoff.mechanics.laws.pushers import Pushers
 from tipoff.mechanics.laws.thrust import Thrust
-from tipoff.scenes.effects.push_file import Push, read_push
 from tipoff.scenes.effects.thrust_offset import Misalignment
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import apart, below

@@ -2,8 +2,8 @@
 
 import pytest
 
+from tests.formats.thrusts.support import points, refusal, thrust
 from tests.scenes.support import small
-from tests.scenes.thrust_files.support import points, refusal, thrust
 from tipoff.formats.instrument_table import PAGE
 from tipoff.scenes import parse
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.sections.part21 import Instances, Reference, value
+from tipoff.formats.sections.part21 import Instances, Reference, value
 
 WAY_OUT = "give such a rail as a solid, [rail] geometry"
 _MOST_FACES = 1000
@@ -66,7 +66,7 @@ class Solid(NamedTuple):
     unit: float | None  # m; None if the file states none
 
 
-def solid(path: str | Path) -> Solid:
+def read_solid(path: str | Path) -> Solid:
     """The only solid of a file. Raises OSError, and ValueError with what the file lacks."""
     file = Instances(path)
     number, values = _only_solid(file)

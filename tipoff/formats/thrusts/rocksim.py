@@ -9,7 +9,8 @@ from xml.parsers import expat
 
 import numpy as np
 
-from tipoff.scenes.thrust_files.record import SECTION, Choice, Record, chosen
+from tipoff.formats.declared import Format
+from tipoff.formats.thrusts.record import SECTION, Choice, Record, chosen
 
 
 class _Engine(NamedTuple):
@@ -17,7 +18,7 @@ class _Engine(NamedTuple):
     points: list[tuple[int, str, str]]  # line, time, force
 
 
-def read(data: bytes, choice: Choice) -> Record:
+def read_rocksim(path: str, data: bytes, choice: Choice) -> Record:
     """The chosen engine. Raises ValueError."""
     choice.require_only(("motor",), "a RockSim file")
     engines = _engines(data)
@@ -72,3 +73,20 @@ def _engines(data: bytes) -> list[_Engine]:
     except LookupError as error:  # an encoding that is not known
         raise ValueError(f"a RockSim file in a known encoding ({error}); {SECTION}") from error
     return found
+
+
+FORMATS = (
+    Format(
+        "RockSim",
+        read_rocksim,
+        [
+            (
+                "RockSim, `.rse`",
+                "`t` and `f` of each `eng-data` of an engine",
+                "s, N",
+                "`motor`: `code`, or `mfg` and `code`",
+            )
+        ],
+        suffixes=(".rse",),
+    ),
+)

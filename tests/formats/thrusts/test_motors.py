@@ -5,7 +5,7 @@ import codecs
 
 import pytest
 
-from tests.scenes.thrust_files.support import points, refusal, thrust
+from tests.formats.thrusts.support import points, refusal, thrust
 from tipoff.formats.instrument_table import PAGE
 
 # As in the collection of RocketPy; its documentation states 6026.35 N s and a peak of 2200 N.

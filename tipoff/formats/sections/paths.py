@@ -7,20 +7,21 @@ extent.
 
 import math
 
-from tipoff.scenes.sections.outline import Corner
+from tipoff.formats.outline import Corner
 
 DEVIATION = 0.0025  # of the larger extent
-UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}  # m
 _JOINED = 1e-4  # of the larger extent: ends closer than this are one
 _STRAIGHT = 1e-9  # of the larger extent: an arc this close to its chord is a line
 LARGEST = 1e3  # m, of a coordinate
 _MOST_BULGE = 1e4  # the chord of such an arc is 1e-4 of its circle
 
 # the points of a line, an arc or several: (y, z, bulge to the next one) in units of the file
-Path = list[tuple[float, float, float]]
+Polyline = list[tuple[float, float, float]]
 
 
-def loops(open_paths: list[Path], closed: list[Path], scale: float) -> list[list[Corner]]:
+def closed_loops(
+    open_paths: list[Polyline], closed: list[Polyline], scale: float
+) -> list[list[Corner]]:
     """Corners (m) of each loop: of ``closed`` ones, and of those that ``open_paths`` make in any order and
     direction; ``scale`` (m) of their unit. Raises ValueError if they make no closed loops."""
     every = [point[:2] for each in (*open_paths, *closed) for point in each]
@@ -31,7 +32,7 @@ def loops(open_paths: list[Path], closed: list[Path], scale: float) -> list[list
     return [[(scale * y, scale * z) for y, z in _corners(each, extent)] for each in found]
 
 
-def _chained(paths: list[Path], near: float) -> list[Path]:
+def _chained(paths: list[Polyline], near: float) -> list[Polyline]:
     """Closed loops of open paths, whose ends are at most ``near`` apart."""
     left, found = list(paths), []
     while left:
@@ -51,16 +52,16 @@ def _chained(paths: list[Path], near: float) -> list[Path]:
     return found
 
 
-def _touches(path: Path, end: Corner, near: float) -> bool:
+def _touches(path: Polyline, end: Corner, near: float) -> bool:
     return any(math.dist(path[place][:2], end) <= near for place in (0, -1))
 
 
-def _reversed(path: Path) -> Path:
+def _reversed(path: Polyline) -> Polyline:
     bulges = [-bulge for _, _, bulge in path[-2::-1]] + [0.0]
     return [(y, z, bulge) for (y, z, _), bulge in zip(path[::-1], bulges)]
 
 
-def _corners(path: Path, extent: float) -> list[Corner]:
+def _corners(path: Polyline, extent: float) -> list[Corner]:
     """Corners of a closed path of a drawing of this ``extent``, whose arcs are chords."""
     found: list[Corner] = []
     for (y, z, bulge), (to_y, to_z, _) in zip(path, path[1:] + path[:1]):

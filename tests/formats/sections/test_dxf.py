@@ -5,8 +5,10 @@ import math
 
 import pytest
 
-from tipoff.scenes.sections import dxf, paths
-from tipoff.scenes.sections.outline import outline
+from tipoff.formats.outline import outline
+from tipoff.formats.sections.dxf import read_dxf
+from tipoff.formats.sections.paths import DEVIATION
+from tipoff.units import LENGTHS_OF_FILES
 
 
 def drawing(*entities: list[tuple[int, object]], units: int | None = 4) -> str:
@@ -37,7 +39,7 @@ def arc(y, z, radius, begin, end):
 def moments(tmp_path, text, unit=None):
     path = tmp_path / "rail.dxf"
     path.write_text(text)
-    return outline(dxf.loops(path, unit)).moments()
+    return outline(read_dxf(path, unit).loops).moments()
 
 
 def test_a_closed_polyline_in_millimetres(tmp_path):
@@ -62,13 +64,13 @@ def test_arcs_and_bulges_are_chords_that_hardly_deviate(tmp_path, turned):
         )
     exact, arcs = 200.0 + 25.0 * math.pi, 10.0 * math.pi
     area = 1e6 * moments(tmp_path, text).area
-    assert 0.0 < exact - area < paths.DEVIATION * 30.0 * arcs
+    assert 0.0 < exact - area < DEVIATION * 30.0 * arcs
 
 
 def test_a_negative_bulge_is_a_notch(tmp_path):
     found = moments(tmp_path, drawing(polyline((0, 0), (20, 0, -1), (20, 10), (0, 10))))
     exact = 200.0 - 12.5 * math.pi
-    assert abs(1e6 * found.area - exact) < paths.DEVIATION * 20.0 * 5.0 * math.pi
+    assert abs(1e6 * found.area - exact) < DEVIATION * 20.0 * 5.0 * math.pi
 
 
 def test_units_of_the_header_or_of_the_key(tmp_path):
@@ -96,7 +98,7 @@ def test_every_unit_of_the_header(tmp_path, code):
     side = 0.01 / LENGTHS[code]
     text = drawing(polyline((0, 0), (side, 0), (side, side), (0, side)), units=code)
     assert moments(tmp_path, text).area == pytest.approx(1e-4, rel=1e-12)
-    for unit, metres in paths.UNITS.items():
+    for unit, metres in LENGTHS_OF_FILES.items():
         if metres == LENGTHS[code]:
             assert moments(tmp_path, text, unit).area == pytest.approx(1e-4, rel=1e-12)
         else:

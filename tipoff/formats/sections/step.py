@@ -14,40 +14,34 @@ import math
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.sections import paths
-from tipoff.scenes.sections.outline import Corner, outline
-from tipoff.scenes.sections.step_solid import WAY_OUT, Edge, Face, Solid, solid
+from tipoff.formats.declared import Format
+from tipoff.formats.outline import Corner, outline
+from tipoff.formats.sections.drawn import Drawn
+from tipoff.formats.sections.paths import LARGEST, Polyline, closed_loops
+from tipoff.formats.sections.step_solid import WAY_OUT, Edge, Face, Solid, read_solid
+from tipoff.units import LENGTHS_OF_FILES
 
-SUFFIXES = (".step", ".stp")
 _ANGLE = 1e-6  # rad: directions closer than this are one
 _SAME = 1e-6  # of the extent: places closer than this are one
 _DIGITS = 9  # of coordinates in metres: a wall in a plane has equal ones
 _ALIKE = 1e-6  # of area and perimeter of both ends
 
 
-class Extrusion(NamedTuple):
-    """The section of a solid."""
-
-    loops: list[list[Corner]]  # m
-    length: float  # m
-
-
-def extrusion(path: str | Path, unit: str | None) -> Extrusion:
+def read_step(path: str | Path, unit: str | None) -> Drawn:
     """The section of the solid in a file. ``unit`` of the lengths if the file states none.
 
     Raises OSError, and ValueError for a file without one solid that is an extrusion, with what it has.
     """
-    found = solid(path)
+    found = read_solid(path)
     if found.unit is None and unit is None:
         raise ValueError('a unit: the file states none, so set rail.unit, for example "mm"')
-    scale = found.unit or paths.UNITS[unit or "m"]
-    if unit is not None and not math.isclose(scale, paths.UNITS[unit]):
+    scale = found.unit or LENGTHS_OF_FILES[unit or "m"]
+    if unit is not None and not math.isclose(scale, LENGTHS_OF_FILES[unit]):
         own = next(
-            (name for name, metres in paths.UNITS.items() if math.isclose(metres, scale)), ""
+            (name for name, metres in LENGTHS_OF_FILES.items() if math.isclose(metres, scale)), ""
         )
         raise ValueError(
             f"no rail.unit{f', or {own!r}' if own else ''}: the file states {scale:g} m"
@@ -55,11 +49,11 @@ def extrusion(path: str | Path, unit: str | None) -> Extrusion:
     return _extrusion(found, scale)
 
 
-def _extrusion(found: Solid, scale: float) -> Extrusion:
+def _extrusion(found: Solid, scale: float) -> Drawn:
     every = np.concatenate([face.points() for face in found.faces])
     near = _SAME * float(np.ptp(every, axis=0).max())
-    if not 0.0 < near < math.inf or float(np.abs(every).max()) * scale > paths.LARGEST:
-        raise ValueError(f"a solid of some length within {paths.LARGEST:g} m of the origin")
+    if not 0.0 < near < math.inf or float(np.abs(every).max()) * scale > LARGEST:
+        raise ValueError(f"a solid of some length within {LARGEST:g} m of the origin")
     along = _direction(found, near, scale)
     heights = every @ along
     across = _across(along)
@@ -75,7 +69,7 @@ def _extrusion(found: Solid, scale: float) -> Extrusion:
     if not all(math.isclose(*pair, rel_tol=_ALIKE) for pair in zip(*shapes)):
         areas = " and ".join(f"{1e6 * area:.6g} mm2" for area, _ in shapes)
         raise ValueError(f"an extrusion; its ends have {areas}; {WAY_OUT}")
-    return Extrusion(ends[1], round(scale * float(np.ptp(heights)), _DIGITS))
+    return Drawn(ends[1], round(scale * float(np.ptp(heights)), _DIGITS))
 
 
 def _direction(found: Solid, near: float, scale: float) -> np.ndarray:
@@ -195,11 +189,11 @@ def _loops(faces: list[Face], across: np.ndarray, scale: float) -> list[list[Cor
     }
     if not borders:
         raise ValueError(f"an extrusion with planes at both ends; {WAY_OUT}")
-    found = paths.loops([_path(edge, across) for edge in borders.values()], [], scale)
+    found = closed_loops([_path(edge, across) for edge in borders.values()], [], scale)
     return [[(round(y, _DIGITS) + 0.0, round(z, _DIGITS) + 0.0) for y, z in loop] for loop in found]
 
 
-def _path(edge: Edge, across: np.ndarray) -> paths.Path:
+def _path(edge: Edge, across: np.ndarray) -> Polyline:
     """The ends of a border, and the middle of an arc of more than half a circle."""
     start, end = ((float(y), float(z)) for y, z in edge.ends @ across.T)
     if edge.curve == "LINE":
@@ -225,3 +219,13 @@ def _size(loops: list[list[Corner]]) -> tuple[float, float]:
     """Area (m2) and length of all borders (m)."""
     found = outline(loops)
     return found.moments().area, sum(math.dist(*side) for side in found.sides())
+
+
+FORMATS = (
+    Format(
+        "STEP",
+        read_step,
+        [("STEP, `.step`, `.stp`", "the section of an extruded solid", "of the solid")],
+        suffixes=(".step", ".stp"),
+    ),
+)

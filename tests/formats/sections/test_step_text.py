@@ -2,9 +2,9 @@
 
 import pytest
 
-from tests.scenes.sections.step_text import prism
-from tipoff.scenes.sections import step
-from tipoff.scenes.sections.outline import outline
+from tests.formats.sections.step_text import prism
+from tipoff.formats.outline import outline
+from tipoff.formats.sections.step import read_step
 
 L = ((0, 0), (24, 0), (24, 4), (4, 4), (4, 24), (0, 24))
 PLACE = "CARTESIAN_POINT ( '', ( {}, 0.0, 0.0 ) )"
@@ -14,7 +14,7 @@ AXES = "AXIS2_PLACEMENT_3D ( '', #{}, $, $ )"
 def found(tmp_path, text, unit=None):
     path = tmp_path / "rail.step"
     path.write_text(text, encoding="latin-1")
-    return step.extrusion(path, unit)
+    return read_step(path, unit)
 
 
 @pytest.mark.parametrize(

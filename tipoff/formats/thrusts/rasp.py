@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.thrust_files.record import SECTION, Choice, Record, chosen
+from tipoff.formats.declared import Format
+from tipoff.formats.thrusts.record import SECTION, Choice, Record, chosen
 
 _WORDS = 7  # of a header; a maker may have several words
 _SHOWN = 5  # wrong lines in a message
@@ -24,7 +25,7 @@ class _Motor(NamedTuple):
     lines: list[int]
 
 
-def read(data: bytes, choice: Choice) -> Record:
+def read_rasp(path: str, data: bytes, choice: Choice) -> Record:
     """The chosen motor. Raises ValueError."""
     choice.require_only(("motor",), "a RASP file")
     motors = _motors(data)
@@ -106,3 +107,20 @@ def _text(data: bytes) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         return data.decode("latin-1")
+
+
+FORMATS = (
+    Format(
+        "RASP",
+        read_rasp,
+        [
+            (
+                "RASP, `.eng`",
+                "points of a motor; (0, 0) is added in front of a first point after 0 s",
+                "s, N",
+                "`motor`: first word of the header line, or maker and name",
+            )
+        ],
+        suffixes=(".eng",),
+    ),
+)

@@ -5,9 +5,9 @@ import math
 import pytest
 from pydantic import TypeAdapter
 
-from tests.scenes.sections.support import SHAPES, T_SLOT
-from tipoff.scenes.sections.outline import outline
-from tipoff.scenes.sections.shapes import ShapeTable
+from tests.scenes.section_shapes import SHAPES, T_SLOT
+from tipoff.formats.outline import outline
+from tipoff.scenes.section_shapes import ShapeTable
 
 SQUARE = [(0.0, 0.0), (0.02, 0.0), (0.02, 0.02), (0.0, 0.02)]
 HOLE = [(0.005, 0.005), (0.015, 0.005), (0.015, 0.015), (0.005, 0.015)]

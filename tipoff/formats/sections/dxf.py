@@ -11,8 +11,10 @@ import math
 from pathlib import Path
 
 from tipoff.files import read_input
-from tipoff.scenes.sections import paths
-from tipoff.scenes.sections.outline import Corner
+from tipoff.formats.declared import Format
+from tipoff.formats.sections.drawn import Drawn
+from tipoff.formats.sections.paths import Polyline, closed_loops
+from tipoff.units import LENGTHS_OF_FILES
 
 _SURVEY = 1200.0 / 3937.0  # m, a foot of the US survey
 _UNITS = (  # of $INSUNITS from 1 on, in m; 0 is none
@@ -48,7 +50,7 @@ _MOST_ENTITIES = 2000
 Pairs = list[tuple[int, str]]
 
 
-def loops(path: str | Path, unit: str | None) -> list[list[Corner]]:
+def read_dxf(path: str | Path, unit: str | None) -> Drawn:
     """Corners (m) of each closed loop, X of the drawing along Y and Y along Z. ``unit`` of the lengths;
     that of the header if None.
 
@@ -60,16 +62,20 @@ def loops(path: str | Path, unit: str | None) -> list[list[Corner]]:
         system = _SYSTEMS.get(_of_header(pairs, "$MEASUREMENT", -1))
         hint = f" ($MEASUREMENT: {system})" if system else ""
         raise ValueError(f'a unit: the drawing states none{hint}, so set rail.unit, such as "mm"')
-    if unit is not None and stated is not None and not math.isclose(paths.UNITS[unit], stated[1]):
+    if (
+        unit is not None
+        and stated is not None
+        and not math.isclose(LENGTHS_OF_FILES[unit], stated[1])
+    ):
         raise ValueError(f"no rail.unit: the drawing states {stated[0]} in $INSUNITS")
-    scale = stated[1] if stated is not None else paths.UNITS[unit or "m"]
-    still_open: list[paths.Path] = []
-    closed: list[paths.Path] = []
+    scale = stated[1] if stated is not None else LENGTHS_OF_FILES[unit or "m"]
+    still_open: list[Polyline] = []
+    closed: list[Polyline] = []
     for entity in _entities(pairs):
         (closed if _is_closed(entity) else still_open).append(_points(entity))
     if not still_open and not closed:
         raise ValueError(f"closed loops; the drawing has no entities; {_READ}")
-    return paths.loops(still_open, closed, scale)
+    return Drawn(closed_loops(still_open, closed, scale))
 
 
 def _pairs(path: str | Path) -> Pairs:
@@ -132,7 +138,7 @@ def _is_closed(entity: Pairs) -> bool:
     return entity[0][1] == "LWPOLYLINE" and bool(int(_number(_first(entity, 70, "0"))) & 1)
 
 
-def _points(entity: Pairs) -> paths.Path:
+def _points(entity: Pairs) -> Polyline:
     kind = entity[0][1]
     if _number(_first(entity, 230, "1")) < 0.0:
         raise ValueError(f"entities seen from above; a {kind} is mirrored (group 230 is negative)")
@@ -148,7 +154,7 @@ def _points(entity: Pairs) -> paths.Path:
             (y + radius * math.cos(angle), z + radius * math.sin(angle), bulge)
             for angle in (begin, begin + sweep)
         ]
-    found: paths.Path = []
+    found: Polyline = []
     for code, value in entity:
         if code == 10:
             found.append((_number(value), 0.0, 0.0))
@@ -179,3 +185,14 @@ def _number(text: str) -> float:
     if not math.isfinite(found):
         raise ValueError(f"numbers in the drawing, not {text!r}")
     return found
+
+
+FORMATS = (
+    Format(
+        "DXF",
+        read_dxf,
+        [("DXF as text, `.dxf`", "closed loops of `LINE`, `ARC` and `LWPOLYLINE`", "gives none")],
+        suffixes=(".dxf",),
+        is_any_other=True,
+    ),
+)

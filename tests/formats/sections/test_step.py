@@ -7,16 +7,18 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from tests.scenes.sections.support import T_SLOT
-from tests.scenes.sections.test_dxf import arc, drawing, line
-from tests.scenes.sections.test_outline import shape
-from tests.scenes.sections.test_profile_rail import RAIL
+from tests.formats.sections.test_dxf import arc, drawing, line
+from tests.formats.test_outline import shape
+from tests.scenes.section_shapes import T_SLOT
 from tests.scenes.support import CONTACT, SMALL, small
+from tests.scenes.test_profile_rail import RAIL
+from tipoff.formats.outline import outline
+from tipoff.formats.sections.dxf import read_dxf
+from tipoff.formats.sections.step import read_step
+from tipoff.formats.sections.step_solid import read_solid
 from tipoff.highfi.rail import scene_mesh
 from tipoff.meshes import generator
 from tipoff.scenes import SceneError, parse
-from tipoff.scenes.sections import dxf, step, step_solid
-from tipoff.scenes.sections.outline import outline
 
 pytestmark = pytest.mark.gmsh
 LENGTH = 200.0  # mm
@@ -71,7 +73,7 @@ def principal(moments):
 
 
 def found(path, unit=None):
-    return outline(step.extrusion(path, unit).loops)
+    return outline(read_step(path, unit).loops)
 
 
 TURNS = {
@@ -91,7 +93,7 @@ def test_area_and_principal_moments_are_those_of_opencascade(tmp_path, corners, 
     near = 1e-6 if not arcs else 0.004  # chords of the fillet
     assert area == pytest.approx(exact_area, rel=near)
     assert moments == pytest.approx(exact, rel=near)
-    assert step.extrusion(path, None).length == pytest.approx(1e-3 * LENGTH, abs=2e-9)
+    assert read_step(path, None).length == pytest.approx(1e-3 * LENGTH, abs=2e-9)
 
 
 @pytest.mark.parametrize(
@@ -122,7 +124,7 @@ def test_a_fillet_is_the_same_as_in_a_drawing(tmp_path):
     solid = written(tmp_path / "rail.step", lambda occ: prism(occ, L, (FILLET,)))
     lines = [line(*a, *b) for n, (a, b) in enumerate(zip(L, L[1:] + L[:1])) if n != FILLET]
     (tmp_path / "rail.dxf").write_text(drawing(*lines, arc(7, 7, 3, 180, 270)))
-    one, two = found(solid), outline(dxf.loops(tmp_path / "rail.dxf", None))
+    one, two = found(solid), outline(read_dxf(tmp_path / "rail.dxf", None).loops)
     assert len(one.loops[0]) == len(two.loops[0]) == len(L) + 3
     meshes, pads = [], [SMALL["pads"][0] | {"width": "6 mm", "inset": "10 mm"}]
     for file in (solid, tmp_path / "rail.dxf"):
@@ -162,7 +164,7 @@ def test_an_end_in_two_faces_has_one_border(tmp_path):
         occ.fuse([prism(occ, BLOCK)], [(3, occ.addBox(0, 10, 0, 20, 5, LENGTH))])
 
     path = written(tmp_path / "rail.step", fused, joined=False)
-    assert len(step_solid.solid(path).faces) == 10
+    assert len(read_solid(path).faces) == 10
     section = found(path)
     assert section.moments().area == pytest.approx(3e-4)
     assert len(section.loops[0]) == 6

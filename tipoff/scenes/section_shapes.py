@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, model_validator
 
-from tipoff.scenes.sections.outline import Corner, Loop, Outline, outline
+from tipoff.formats.outline import Corner, Loop, Outline, outline
 from tipoff.scenes.table import Table, is_absent
 from tipoff.scenes.units import Dimension
 

@@ -11,9 +11,9 @@ from typing import NoReturn
 import numpy as np
 
 from tipoff.faults import SceneError
-from tipoff.formats import instrument_table
-from tipoff.formats.instrument_table import Written, head, scale, stated, words
-from tipoff.scenes.thrust_files.record import SECTION, Choice, Record
+from tipoff.formats.declared import Format
+from tipoff.formats.instrument_table import Written, head, read_table, scale, stated, words
+from tipoff.formats.thrusts.record import SECTION, Choice, Record
 
 _HOUSE = ["time_s", "force_N"]
 _THRUST = {"thrust", "force", "f", "load", "schub", "kraft"}
@@ -21,7 +21,7 @@ _NAMES = {"time": "s", "thrust": "N"}
 _LAYOUT = "time_s,force_N or Time [ms];Thrust (lbf)"
 
 
-def read(path: str, data: bytes, choice: Choice) -> Record:
+def read_thrust_table(path: str, data: bytes, choice: Choice) -> Record:
     """The two columns. Raises ValueError with every fault of the table."""
     choice.require_only(Choice._fields[1:], "a table")
     named = {"time": choice.time_column, "thrust": choice.thrust_column}
@@ -31,7 +31,7 @@ def read(path: str, data: bytes, choice: Choice) -> Record:
         return all(_candidates(table, kind, named[kind]) for kind in _NAMES)
 
     try:
-        table = instrument_table.read_table(path, data, is_header)
+        table = read_table(path, data, is_header)
     except SceneError as error:
         raise ValueError(f"{error.faults[0].expected} ({error.faults[0].given})") from error
     places = [_place(table, kind, named[kind]) for kind in _NAMES]
@@ -122,3 +122,31 @@ def _refuse(table: Written, why: str) -> NoReturn:
         f"a table whose header names a time and a thrust with their units, as in {_LAYOUT} "
         f"({why}; {table.shown()}); {SECTION}"
     )
+
+
+FORMATS = (
+    Format(
+        "table",
+        read_thrust_table,
+        [
+            ("table of tipoff, `time_s,force_N`", "both columns", "in the header", "by the header"),
+            (
+                "table of another program or a log: commas, semicolons, tabs or blanks; comment lines with "
+                "`#`, `%`, `//` or `;`; lines of text above the header; a header behind a comment mark; "
+                "decimal commas",
+                "a column of times and one of thrusts; other columns are ignored",
+                "in the header, `Time [ms]`, `Thrust (lbf)`, `Force/N`, `time_us`, or in a line below it; "
+                "otherwise in `time_unit` and `thrust_unit`",
+                "by a name with the word time, timestamp, zeit or t, and one with thrust, force, load, "
+                "schub, kraft or f; if several fit, by `time_column` and `thrust_column`",
+            ),
+            (
+                "table of RocketPy without a header",
+                "the two columns",
+                "`time_unit` and `thrust_unit`",
+                'the first is the time; of more than two columns, by number: `time_column = "2"`',
+            ),
+        ],
+        is_any_other=True,
+    ),
+)

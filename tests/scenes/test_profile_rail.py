@@ -5,8 +5,8 @@ import copy
 
 import pytest
 
-from tests.scenes.sections.support import T_SLOT
-from tests.scenes.sections.test_dxf import drawing, polyline
+from tests.formats.sections.test_dxf import drawing, polyline
+from tests.scenes.section_shapes import T_SLOT
 from tests.scenes.support import SMALL, small
 from tipoff.scenes import SceneError, load, parse
 from tipoff.scenes.profile_rail import ProfileTable
