@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from tipoff import files, scenes
-from tipoff.comparison.curve_files import reading
+from tipoff.comparison.quantities import read_quantities
 from tipoff.formats.sections import dxf
 from tipoff.lowfi.ensemble.table import TableFile
 
@@ -68,7 +68,7 @@ def test_readers_of_text_know_the_encodings_of_windows(tmp_path, encoding):
     curve = written(
         "a.csv", "time [s],rate_x [deg/s],rate_y [deg/s],rate_z [deg/s]\n0,0,1,2\n1,1,2,3\n"
     )
-    found = reading.read(curve, optional=("velocity_x",))
+    found = read_quantities(curve, optional=("velocity_x",))
     assert not found.faults and found.values["time"].tolist() == [0.0, 1.0]
     pairs = "0 SECTION 2 HEADER 0 ENDSEC 0 SECTION 2 ENTITIES 0 LWPOLYLINE 90 3 70 1"
     pairs += " 10 0 20 0 10 1 20 0 10 0 20 1 0 ENDSEC 0 EOF"

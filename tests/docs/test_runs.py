@@ -15,8 +15,8 @@ import pytest
 from typer.testing import CliRunner
 
 import tipoff
-from tests.comparison.curve_files import adams_files, dyna_files
 from tests.docs import pages
+from tests.formats.curves import adams_files, dyna_files
 from tipoff.kernels.rotation import matrices
 from tipoff.studies import droptest
 from tipoff.studies.cli import app

@@ -12,12 +12,12 @@ import meshio
 import numpy as np
 import typer
 
-from tests.comparison.curve_files import adams_files, dyna_files
+from tests.formats.curves import adams_files, dyna_files
 from tests.fuzz import mutants, results, sections
 from tests.highfi.mesh import forms
 from tipoff import scenes
-from tipoff.comparison.curve_files.layout import of_options
 from tipoff.comparison.curves import Curves
+from tipoff.comparison.layout import of_options
 from tipoff.faults import InputError
 from tipoff.highfi.compliance import walls
 from tipoff.highfi.mesh import touching

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.comparison.curve_files import reading
-from tipoff.comparison.curve_files.layout import OF_THE_FORMAT, RATES, Layout
+from tipoff.comparison.layout import OF_THE_FORMAT, RATES, Layout
+from tipoff.comparison.quantities import read_quantities
 from tipoff.faults import Fault, SceneError
 from tipoff.mechanics.run_limits import SETTLE_WINDOW
 from tipoff.results.trajectory import Trajectory
@@ -60,7 +60,7 @@ class Curves(NamedTuple):
         layout: Layout = OF_THE_FORMAT,
         optional: Collection[str] = (),
     ) -> "Curves":
-        """Curves of a file of any format that ``curve_files.reading`` knows; the window begins at
+        """Curves of a file of any format that ``formats.curves`` knows; the window begins at
         ``settled_from`` (s), or ends with the record. Without velocity_x, if that is ``optional``,
         the velocity is NaN.
 
@@ -68,7 +68,7 @@ class Curves(NamedTuple):
         of another kind, cells without a finite number, times that do not increase from ignition or
         have a gap, a record too short for the window.
         """
-        found, faults, digest = reading.read(path, layout, optional)
+        found, faults, digest = read_quantities(path, layout, optional)
         if "time" in found:
             faults = faults + _time_faults(str(path), found["time"], settled_from)
         if faults:

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 import tipoff
-from tests.comparison.curve_files import dyna_files
+from tests.formats.curves import dyna_files
 from tipoff.comparison.curves import Curves
 from tipoff.studies.cli import app
 from tipoff.studies.curves import stage

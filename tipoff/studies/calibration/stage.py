@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tipoff.comparison.curve_files.layout import OF_THE_FORMAT, Layout, of_options
+from tipoff.comparison.layout import OF_THE_FORMAT, Layout, of_options
 from tipoff.faults import Fault, SceneError
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance

@@ -249,7 +249,7 @@ _OF_FILES = {
 
 
 def of_files(flag: str) -> Any:
-    """An option on the layout of files with curves, in the form of ``curve_files.layout``."""
+    """An option on the layout of files with curves, in the form of ``comparison.layout``."""
     metavar, words = _OF_FILES[flag]
     help_ = f'{words} "NAME: ..." is for that file only. Repeatable.'
     return typer.Option(flag, metavar=metavar, help=help_)

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from tipoff.comparison import metrics
-from tipoff.comparison.curve_files.layout import of_options
 from tipoff.comparison.curves import Curves
+from tipoff.comparison.layout import of_options
 from tipoff.faults import Fault, SceneError, together
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.calibration import Calibration

@@ -8,8 +8,8 @@ a command.
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
-from tipoff.comparison.curve_files.table import BODY, SCENE
 from tipoff.faults import Fault, SceneError, close
+from tipoff.formats.curves.record import BODY, SCENE
 from tipoff.units import duration, to_si
 
 QUANTITIES = {

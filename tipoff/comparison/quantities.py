@@ -1,30 +1,25 @@
-"""Curves of a file in SI, whatever code wrote it: the format is recognised by the content.
+"""Quantities of a file with curves in SI and in body axes, whatever code wrote it.
 
 Rates in scene axes are turned into body axes, which are parallel to them at the first sample:
 
     dQ/dt = [w x] Q,   w_body = Q' w          w in scene axes, Q body to scene
 """
 
-import hashlib
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.comparison.curve_files import adams, binout, lsdyna, text
-from tipoff.comparison.curve_files.layout import LENGTH, OF_THE_FORMAT, QUANTITIES, RATES, Layout
-from tipoff.comparison.curve_files.table import BODY, SCENE, Table
+from tipoff.comparison.layout import LENGTH, OF_THE_FORMAT, QUANTITIES, RATES, Layout
 from tipoff.faults import Fault, SceneError
-from tipoff.files import MOST_TEXT, open_input, read_input
 from tipoff.formats.csv_file import factor_to_si
+from tipoff.formats.curves.nodout import DEFAULTS, NODOUT, WITHOUT_RATES
+from tipoff.formats.curves.reader import read_curves
+from tipoff.formats.curves.record import BODY, SCENE, Asked, CurveTable
 from tipoff.kernels.jit import njit
 from tipoff.kernels.rotation import matrix, step, unrotate
 
-MOST_BYTES = 2**27  # of a text file of LS-DYNA or Adams; of these only some columns are kept
-_HDF5 = b"\x89HDF\r\n\x1a\n"
-_HEAD = 2**16  # bytes in which the root of XML is
-_BLOCK = 2**20
 _ROUNDING = 1e-9  # s, of times in a file
 
 
@@ -37,11 +32,14 @@ class Found(NamedTuple):
     digest: str
 
 
-def read(path: str | Path, layout: Layout = OF_THE_FORMAT, optional: Collection[str] = ()) -> Found:
+def read_quantities(
+    path: str | Path, layout: Layout = OF_THE_FORMAT, optional: Collection[str] = ()
+) -> Found:
     """The quantities ``layout.QUANTITIES`` of a file; those that are ``optional`` may be absent."""
     source = str(path)
     try:
-        table, digest = _table(path, layout)
+        columns = tuple(column for _, column in layout.columns)
+        table, digest = read_curves(path, Asked(layout.body, columns, tuple(QUANTITIES)))
     except OSError as error:
         given = error.strerror or str(error)
         return Found({}, [Fault(source, "file", given, "a readable file with curves")], "")
@@ -74,47 +72,8 @@ def read(path: str | Path, layout: Layout = OF_THE_FORMAT, optional: Collection[
     return Found(values, faults, digest)
 
 
-def _table(path: str | Path, layout: Layout) -> tuple[Table, str]:
-    """The table of a file and its digest. Raises SceneError and OSError."""
-    source = str(path)
-    with open_input(path) as stream:
-        head = stream.read(_HEAD)
-        if head.startswith(_HDF5):
-            words = "binout of LS-DYNA as LSDA, or rbdout or nodout as text"
-            raise SceneError([Fault(source, "file", "HDF5", words)])
-        if Path(path).suffix.lower() == ".req":
-            words = "results of Adams in XML (.res), or a table of Adams/PostProcessor (.tab)"
-            raise SceneError([Fault(source, "file", "a request file", words)])
-        if binout.is_one(head):
-            return binout.read(path, layout.body), _digest(binout.parts(path))
-    data = read_input(path, MOST_BYTES)
-    digest = hashlib.sha256(data).hexdigest()
-    for kind, mark in lsdyna.MARKS.items():
-        if mark in data:
-            return lsdyna.read(source, data, kind, layout.body), digest
-    wanted = [column.removeprefix("-") for _, column in layout.columns]
-    if adams.MARK.search(data, 0, _HEAD):
-        return adams.read(
-            source, data, layout.body, [*wanted, *(c for _, c in layout.columns)]
-        ), digest
-    if len(data) > MOST_TEXT:
-        given = f"more than {MOST_TEXT // 2**20} MiB"
-        raise SceneError([Fault(source, "file", given, "a smaller table")])
-    return text.read(source, data, {*wanted, *QUANTITIES}), digest
-
-
-def _digest(paths: Iterable[Path]) -> str:
-    """SHA-256 of the files one after another."""
-    found = hashlib.sha256()
-    for path in paths:
-        with open_input(path) as stream:
-            while block := stream.read(_BLOCK):
-                found.update(block)
-    return found.hexdigest()
-
-
 def _quantity(
-    source: str, name: str, si: str, table: Table, layout: Layout
+    source: str, name: str, si: str, table: CurveTable, layout: Layout
 ) -> tuple[np.ndarray, list[Fault]]:
     """One quantity (n,) in SI, and its faults."""
     column = dict(layout.columns).get(name, table.columns.get(name, name))
@@ -123,8 +82,8 @@ def _quantity(
         place, sign = table.place(column[1:].strip()), -1.0
     if place is None:
         fault = table.no_column(source, name, column)
-        if column == lsdyna.DEFAULTS[lsdyna.NODOUT].get(name) and name in RATES:
-            fault = fault._replace(expected=lsdyna.WITHOUT_RATES)
+        if column == DEFAULTS[NODOUT].get(name) and name in RATES:
+            fault = fault._replace(expected=WITHOUT_RATES)
         return np.empty(0), [fault]
     values, faults = table.numbers(source, name, place)
     unit = table.units[place] if place < len(table.units) else None
@@ -135,7 +94,7 @@ def _quantity(
 
 
 def _of_rates(
-    source: str, table: Table, layout: Layout, values: dict[str, np.ndarray]
+    source: str, table: CurveTable, layout: Layout, values: dict[str, np.ndarray]
 ) -> list[Fault]:
     """Faults of quantities that share a column, and of rates of a node that does not turn. Two columns
     that are exchanged do not show: axes may have any names."""
@@ -150,10 +109,10 @@ def _of_rates(
             words = f"a column of its own; {taken[place]} has this one"
             faults.append(Fault(source, name, f"column {column.removeprefix('-')!r}", words))
         taken.setdefault(place, name)
-    is_node = table.columns == lsdyna.DEFAULTS[lsdyna.NODOUT]
+    is_node = table.columns == DEFAULTS[NODOUT]
     rates = [values[name] for name in RATES if name in values]
     if is_node and rates and len(rates[0]) > 1 and not np.any(rates):
-        faults.append(Fault(source, "rates", "0 at every time", lsdyna.WITHOUT_RATES))
+        faults.append(Fault(source, "rates", "0 at every time", WITHOUT_RATES))
     return faults
 
 
@@ -174,7 +133,7 @@ def _factor(
     return factor, faults
 
 
-def _misplaced(source: str, layout: Layout, table: Table) -> list[Fault]:
+def _misplaced(source: str, layout: Layout, table: CurveTable) -> list[Fault]:
     """Faults of options that this format does not have."""
     faults = []
     if isinstance(table.rows, list) and layout.body is not None:
@@ -186,7 +145,7 @@ def _misplaced(source: str, layout: Layout, table: Table) -> list[Fault]:
     return faults
 
 
-def _axes_faults(source: str, layout: Layout, table: Table) -> list[Fault]:
+def _axes_faults(source: str, layout: Layout, table: CurveTable) -> list[Fault]:
     if layout.axes or table.axes:
         return []
     words = f"--axes {BODY} or --axes {SCENE}: the file does not tell the axes of its rates"

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from tests.comparison.curve_files.dyna_files import written
-from tipoff.comparison.curve_files import reading
-from tipoff.comparison.curve_files.layout import of_options
+from tests.formats.curves.dyna_files import written
+from tipoff.comparison.layout import of_options
+from tipoff.comparison.quantities import Found, read_quantities
 
 NAMES = "time=Time, velocity_x=VX, rate_x=WX, rate_y=WY, rate_z=WZ"
 NUMBERS = "time=1, velocity_x=2, rate_x=3, rate_y=4, rate_z=5"
@@ -24,7 +24,7 @@ def rows(separator: str, comma: bool = False) -> str:
     return "\n".join(lines).replace(".", "," if comma else ".") + "\n"
 
 
-def require_rows(found: reading.Found) -> None:
+def require_rows(found: Found) -> None:
     assert not found.faults, "\n".join(map(str, found.faults))
     assert found.values["time"] == pytest.approx([0.0, 5e-4])
     assert found.values["velocity_x"] == pytest.approx([0.0, 0.25])
@@ -74,18 +74,18 @@ SAVETXT = "# Time VX WX WY WZ\n" + rows(" ")
     ],
 )
 def test_a_table_is_read_by_its_names(text, tmp_path):
-    require_rows(reading.read(written(tmp_path, "a.txt", text), layout()))
+    require_rows(read_quantities(written(tmp_path, "a.txt", text), layout()))
 
 
 @pytest.mark.parametrize("text", [EXUDYN, TAB, RPT, SAVETXT, rows(" "), rows(";", comma=True)])
 def test_a_table_is_read_by_its_numbers(text, tmp_path):
-    require_rows(reading.read(written(tmp_path, "a.txt", text), layout(NUMBERS)))
+    require_rows(read_quantities(written(tmp_path, "a.txt", text), layout(NUMBERS)))
 
 
 @pytest.mark.parametrize("title", ["! run 1\n", "3 rails\n", "# 2 1 3 of 5\n", "run 3 of 5\n"])
 def test_numbers_in_a_title_are_no_columns(title, tmp_path):
     """Column 3 is the third, although a word of the title is "3"."""
-    require_rows(reading.read(written(tmp_path, "a.txt", title + rows(" ")), layout(NUMBERS)))
+    require_rows(read_quantities(written(tmp_path, "a.txt", title + rows(" ")), layout(NUMBERS)))
 
 
 @pytest.mark.parametrize(
@@ -100,28 +100,28 @@ def test_numbers_in_a_title_are_no_columns(title, tmp_path):
 def test_units_of_the_header(header, tmp_path):
     """Control: without them each column is refused."""
     path = written(tmp_path, "a.csv", f"{header}\n{rows(',')}")
-    require_rows(reading.read(path, layout(units=None)))
+    require_rows(read_quantities(path, layout(units=None)))
     path = written(tmp_path, "b.csv", f"{','.join(HEADER)}\n{rows(',')}")
-    found = reading.read(path, layout(units=None))
+    found = read_quantities(path, layout(units=None))
     assert [fault.given for fault in found.faults] == ["no unit"] * 5
     assert '--units "rate_z=rad/s"' in str(found.faults[-1])
 
 
 def test_units_between_blanks_belong_to_the_name_before_them(tmp_path):
     text = "# Time [ms]  VX [m/s]  WX [deg/s]  WY [deg/s]  WZ [deg/s]\n" + rows("  ")
-    require_rows(reading.read(written(tmp_path, "a.dat", text), layout(units=None)))
+    require_rows(read_quantities(written(tmp_path, "a.dat", text), layout(units=None)))
 
 
 def test_a_unit_that_the_file_contradicts_is_refused(tmp_path):
     """A unit in the header that is none may be replaced. Control: the same unit in other words."""
     head = "Time [ms],VX [m/s],WX [{}],WY [deg/s],WZ [deg/s]\n" + rows(",")
     path = written(tmp_path, "a.csv", head.format("deg/s"))
-    found = reading.read(path, layout(units="rate=rad/s"))
+    found = read_quantities(path, layout(units="rate=rad/s"))
     assert "WX" not in found.values and len(found.faults) == 3
     assert "given rad/s in --units, expected deg/s, the unit in the file" in str(found.faults[0])
-    require_rows(reading.read(path, layout(units="rate=degree/second")))
+    require_rows(read_quantities(path, layout(units="rate=degree/second")))
     path = written(tmp_path, "b.csv", head.format("dps"))
-    require_rows(reading.read(path, layout(units="rate_x=deg/s")))
+    require_rows(read_quantities(path, layout(units="rate_x=deg/s")))
 
 
 def test_times_begin_at_the_ignition(tmp_path):
@@ -129,16 +129,16 @@ def test_times_begin_at_the_ignition(tmp_path):
     late = "\n".join(f"{100.0 + row[0]},{','.join(map(str, row[1:]))}" for row in ROWS)
     text = f"{','.join(HEADER)}\n0,9,9,9,9\n50,9,9,9,9\n{late}\n"
     path = written(tmp_path, "a.csv", text)
-    require_rows(reading.read(path, layout(ignition=["100 ms"])))
-    found = reading.read(path, layout(ignition=["1 s"]))
+    require_rows(read_quantities(path, layout(ignition=["100 ms"])))
+    found = read_quantities(path, layout(ignition=["1 s"]))
     assert not found.faults and found.values["time"].size == 0
 
 
 def test_a_sign_turns_an_axis(tmp_path):
     path = written(tmp_path, "a.txt", TAB)
-    found = reading.read(path, layout(NAMES.replace("rate_z=WZ", "rate_z=-WX")))
+    found = read_quantities(path, layout(NAMES.replace("rate_z=WZ", "rate_z=-WX")))
     assert found.values["rate_z"] == pytest.approx(-found.values["rate_x"])
-    found = reading.read(path, layout(NAMES.replace("rate_z=WZ", "rate_z=-3")))
+    found = read_quantities(path, layout(NAMES.replace("rate_z=WZ", "rate_z=-3")))
     assert found.values["rate_z"] == pytest.approx(-found.values["rate_x"])
 
 
@@ -161,14 +161,14 @@ def test_a_sign_turns_an_axis(tmp_path):
     ],
 )
 def test_a_fault_is_one_line(text, columns, words, tmp_path):
-    found = reading.read(written(tmp_path, "a.txt", text), layout(columns))
+    found = read_quantities(written(tmp_path, "a.txt", text), layout(columns))
     said = "\n".join(map(str, found.faults))
     assert all(word in said for word in words.split("|")), said
 
 
 def test_options_of_other_formats_are_refused(tmp_path):
     path = written(tmp_path, "a.txt", TAB)
-    found = reading.read(path, layout(units=f"{UNITS}, length=mm", body=["7"]))
+    found = read_quantities(path, layout(units=f"{UNITS}, length=mm", body=["7"]))
     said = "\n".join(map(str, found.faults))
     assert "--body: given 7, expected none: a table has one body" in said
     assert "--units length: given mm, expected none: only files of LS-DYNA" in said
@@ -179,6 +179,6 @@ def test_two_quantities_have_two_columns(tmp_path, other):
     """Control: the sign or the number of the column does not make it another one."""
     names = "time=Time, velocity_x=VX, rate_x=WX, rate_y=WY, rate_z=" + other.replace("5", "4")
     text = "Time,VX,WX,WY,WZ\n" + rows(",")
-    found = reading.read(written(tmp_path, "a", text), layout(names))
+    found = read_quantities(written(tmp_path, "a", text), layout(names))
     (fault,) = found.faults
     assert fault.key == "rate_z" and "rate_y has this one" in fault.expected

@@ -1,19 +1,62 @@
-"""The columns of a file with curves, before their units; and their choice by name or number."""
+"""What is asked of a file with curves, and the columns that are read from it, before their units."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
 from tipoff.faults import Fault, SceneError, close
+from tipoff.files import open_input, read_input
 from tipoff.formats.csv_file import Line, numbers
+from tipoff.formats.declared import Format
 
+MOST_BYTES = 2**27  # of a text; of that of LS-DYNA or Adams only some columns are kept
+HEAD = 2**16  # bytes in which the root of XML is
 _SHOWN = 40  # names or bodies listed in a fault
 BODY, SCENE = "body", "scene"  # axes of rates
 
 
-class Table(NamedTuple):
+class CurveFile:
+    """A file with curves. Raises OSError if it cannot be read."""
+
+    def __init__(self, path: str | Path) -> None:
+        self.path, self.source = Path(path), str(path)
+        with open_input(path) as stream:
+            self.head = stream.read(HEAD)
+
+    @cached_property
+    def data(self) -> bytes:
+        """The content of a text, in UTF-8."""
+        return read_input(self.path, MOST_BYTES)
+
+
+class Asked(NamedTuple):
+    """What is asked of a file."""
+
+    body: str | None  # number of a body or node, name of a part
+    columns: tuple[str, ...]  # by header or number, with a sign
+    names: tuple[str, ...]  # of the columns of a table by default
+
+    def unsigned(self) -> list[str]:
+        """The columns without their signs."""
+        return [column.removeprefix("-") for column in self.columns]
+
+
+@dataclass(frozen=True)
+class CurveFormat(Format):
+    """A format of curves: ``read`` makes a CurveTable from a CurveFile and what is asked."""
+
+    begins: Callable[[bytes], bool] | None = None  # whether a binary file is in it, by its head
+    is_in: Callable[[bytes], bool] | None = None  # whether a text is in it, by its content
+    # files of a binary one, of which the digest is; None: itself
+    parts: Callable[[Path], list[Path]] | None = None
+
+
+class CurveTable(NamedTuple):
     """Columns of one body or node.
 
     ``columns`` names the default column of a quantity if it is not that of the quantity.
@@ -70,7 +113,7 @@ def listed(names: Sequence[str]) -> str:
     return ", ".join([*shown[:_SHOWN], *more]) or "nothing"
 
 
-def chosen(source: str, body: str | None, found: Sequence[str]) -> str:
+def chosen_body(source: str, body: str | None, found: Sequence[str]) -> str:
     """The name of one body or node among those ``found``: "rbdout 7", also by its last word "7".
     Without ``body`` the file must have one. Raises SceneError."""
     alike = [name for name in found if body in (None, name)]

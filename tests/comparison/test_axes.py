@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from tests.comparison.curve_files.dyna_files import written
-from tipoff.comparison.curve_files import reading
-from tipoff.comparison.curve_files.layout import of_options
+from tests.formats.curves.dyna_files import written
+from tipoff.comparison.layout import of_options
+from tipoff.comparison.quantities import in_body_axes, read_quantities
 
 SPIN, PRECESSION = 3.0, 5.0  # rad/s
 
@@ -23,7 +23,7 @@ def precession(time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def largest_error(samples: int) -> float:
     time = np.linspace(0.0, 0.4, samples)
     scene, body = precession(time)
-    return float(np.abs(reading.in_body_axes(time, scene) - body).max())
+    return float(np.abs(in_body_axes(time, scene) - body).max())
 
 
 def test_a_precession_has_its_exact_rates_to_second_order():
@@ -42,7 +42,7 @@ def test_a_table_states_its_axes(tmp_path):
     lines += [",".join(map(repr, row)) for row in np.column_stack([time, scene]).tolist()]
     path = written(tmp_path, "a.csv", "\n".join(lines))
     turned, kept = (
-        reading.read(path, of_options(["a"], axes=axes)["a"], optional=("velocity_x",)).values
+        read_quantities(path, of_options(["a"], axes=axes)["a"], optional=("velocity_x",)).values
         for axes in (["scene"], [])
     )
     for place, axis in enumerate("xyz"):

@@ -15,8 +15,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.comparison.curve_files.table import SCENE, Table, chosen
 from tipoff.faults import Fault, SceneError
+from tipoff.formats.curves.record import (
+    SCENE,
+    Asked,
+    CurveFile,
+    CurveFormat,
+    CurveTable,
+    chosen_body,
+)
 
 NODOUT, RBDOUT = "nodout", "rbdout"
 _XYZ = ("x", "y", "z")
@@ -63,7 +70,7 @@ DEFAULTS = {
         "rate_z": "global_rvz",
     },
 }
-MARKS = {NODOUT: b"n o d a l   p r i n t   o u t", RBDOUT: b"r i g i d   b o d y   m o t i o n"}
+_NODOUT_MARK, _RBDOUT_MARK = b"n o d a l   p r i n t   o u t", b"r i g i d   b o d y   m o t i o n"
 _NODE_TIME = re.compile(r"n o d a l   p r i n t   o u t.*\( *at time *(\S+) *\)")
 _BODY_TIME = re.compile(r"r i g i d   b o d y   m o t i o n.*time= *(\S+)")
 _BODY_NUMBER = re.compile(r"\s*(nodal )?rigid body +(\d+)\s*$")
@@ -84,9 +91,19 @@ class _Block(NamedTuple):
     values: list[float]
 
 
-def read(source: str, data: bytes, kind: str, body: str | None) -> Table:
-    """The motion of one ``body`` in a file of a ``kind``. Raises SceneError."""
-    text = io.TextIOWrapper(io.BytesIO(data), encoding="utf-8", errors="replace")
+def read_nodout(file: CurveFile, asked: Asked) -> CurveTable:
+    """The motion of one node. Raises SceneError."""
+    return _motion(file, NODOUT, asked.body)
+
+
+def read_rbdout(file: CurveFile, asked: Asked) -> CurveTable:
+    """The motion of one rigid body. Raises SceneError."""
+    return _motion(file, RBDOUT, asked.body)
+
+
+def _motion(file: CurveFile, kind: str, body: str | None) -> CurveTable:
+    source = file.source
+    text = io.TextIOWrapper(io.BytesIO(file.data), encoding="utf-8", errors="replace")
     blocks = _nodes(source, text) if kind == NODOUT else _bodies(source, text)
     found: dict[str, dict[float, dict[str, float]]] = {}
     wanted = body and body.split()[-1]
@@ -98,11 +115,11 @@ def read(source: str, data: bytes, kind: str, body: str | None) -> Table:
         states.setdefault(block.time, {"time": block.time}).update(zip(block.columns, block.values))
         if len(states) > _MOST_STATES:
             raise SceneError([Fault(source, "file", "more times", f"{_MOST_STATES:,} at most")])
-    states = found[chosen(source, body, list(found))]
-    return table(source, kind, list(states.values()))
+    states = found[chosen_body(source, body, list(found))]
+    return table_of_states(source, kind, list(states.values()))
 
 
-def table(source: str, kind: str, states: list[dict[str, float]]) -> Table:
+def table_of_states(source: str, kind: str, states: list[dict[str, float]]) -> CurveTable:
     """The table of ``states``, each with values by column. The last one may lack values, if the run
     was stopped. Raises SceneError if another one does."""
     names = [name for name in UNITS[kind] if states and name in states[0]]
@@ -116,7 +133,7 @@ def table(source: str, kind: str, states: list[dict[str, float]]) -> Table:
     rows = np.array([[state[name] for name in names] for state in states])
     rows = rows.reshape(len(states), len(names))
     units = ["{time}", *(UNITS[kind][name] for name in names[1:])]
-    return Table(names, units, rows, DEFAULTS[kind], is_consistent=True, axes=SCENE)
+    return CurveTable(names, units, rows, DEFAULTS[kind], is_consistent=True, axes=SCENE)
 
 
 def _nodes(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Block]:
@@ -186,3 +203,35 @@ def _number(source: str, line: int, cell: str) -> float:
     except ValueError:
         given = f"{cell[:40]!r} in line {line}"
         raise SceneError([Fault(source, "file", given, "a number")]) from None
+
+
+FORMATS = (
+    CurveFormat(
+        "nodout of LS-DYNA",
+        read_nodout,
+        [
+            (
+                "LS-DYNA `nodout`, text",
+                "`x_displacement`, `x_velocity`, `rx_velocity` ... of one node",
+                "number of the node",
+                '`--units "time=ms, length=mm"`',
+                "scene",
+            )
+        ],
+        is_in=lambda data: _NODOUT_MARK in data,
+    ),
+    CurveFormat(
+        "rbdout of LS-DYNA",
+        read_rbdout,
+        [
+            (
+                "LS-DYNA `rbdout`, text",
+                "`global_dx`, `global_vx`, `global_rvx` ... of one rigid body",
+                "number of the body",
+                '`--units "time=ms, length=mm"`',
+                "scene",
+            )
+        ],
+        is_in=lambda data: _RBDOUT_MARK in data,
+    ),
+)

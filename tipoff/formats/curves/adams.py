@@ -12,10 +12,17 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from tipoff.comparison.curve_files.table import Table, chosen
 from tipoff.faults import Fault, SceneError
+from tipoff.formats.curves.record import (
+    HEAD,
+    Asked,
+    CurveFile,
+    CurveFormat,
+    CurveTable,
+    chosen_body,
+)
 
-MARK = re.compile(rb"<Results[\s>]")
+_MARK = re.compile(rb"<Results[\s>]")
 _TIME = "time.TIME"
 _XFORM = "_XFORM"
 _INPUT, _INITIAL = "input", "initialConditions"
@@ -30,9 +37,11 @@ class _Component(NamedTuple):
     place: int  # from 1
 
 
-def read(source: str, data: bytes, body: str | None, wanted: list[str]) -> Table:
-    """The components ``ENTITY.NAME`` that are ``wanted``, with their units; by default those of the
-    part ``body``. Raises SceneError."""
+def read_adams(file: CurveFile, asked: Asked) -> CurveTable:
+    """The components ``ENTITY.NAME`` that are ``asked``, with their units; by default those of one part.
+    Raises SceneError."""
+    source, data, body = file.source, file.data, asked.body
+    wanted = [*asked.unsigned(), *asked.columns]
     if b"<!DOCTYPE" in data or b"<!ENTITY" in data:  # entities may expand without end
         raise SceneError([Fault(source, "file", "a DOCTYPE", "XML without one, as of Adams")])
     try:
@@ -43,7 +52,7 @@ def read(source: str, data: bytes, body: str | None, wanted: list[str]) -> Table
         raise SceneError([Fault(source, "file", str(error), "XML of Adams results")]) from None
 
 
-def _read(source: str, data: bytes, body: str | None, wanted: list[str]) -> Table:
+def _read(source: str, data: bytes, body: str | None, wanted: list[str]) -> CurveTable:
     components: list[_Component] = []
     kept: dict[str, _Component] = {}
     columns: dict[str, str] = {"time": _TIME}
@@ -78,7 +87,7 @@ def _read(source: str, data: bytes, body: str | None, wanted: list[str]) -> Tabl
     table = np.full((len(rows), len(ordered)), np.nan)
     table[:, : len(kept)] = np.array(rows).reshape(len(rows), len(kept))
     units = {f"{one.entity}.{one.name}": one.unit for one in components}
-    return Table(ordered, [units[name] for name in ordered], table, columns, axes=None)
+    return CurveTable(ordered, [units[name] for name in ordered], table, columns, axes=None)
 
 
 def _component(source: str, entity: str, item: ElementTree.Element) -> _Component:
@@ -102,7 +111,7 @@ def _of_part(
     if body is None and wanted:
         return {}
     found = {name.removesuffix(_XFORM): name for name in dict.fromkeys(parts)}
-    part = found[chosen(source, body, list(found))]
+    part = found[chosen_body(source, body, list(found))]
     return {name: f"{part}.{component}" for name, component in _COMPONENTS.items()}
 
 
@@ -115,3 +124,25 @@ def _values(source: str, text: str, kept: list[_Component]) -> list[float]:
         raise SceneError([Fault(source, "Step", given, "one for each component")]) from None
     except ValueError as error:
         raise SceneError([Fault(source, "Step", str(error)[:80], "numbers")]) from None
+
+
+def _is_adams(data: bytes) -> bool:
+    return _MARK.search(data, 0, HEAD) is not None
+
+
+FORMATS = (
+    CurveFormat(
+        "Adams",
+        read_adams,
+        [
+            (
+                "Adams results `.res`, XML",
+                "components `ENTITY.NAME`, such as `time.TIME` and `PART_2_XFORM.WX`",
+                "name of the part",
+                "in the file",
+                "`--axes` must state them",
+            )
+        ],
+        is_in=_is_adams,
+    ),
+)

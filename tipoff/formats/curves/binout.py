@@ -29,10 +29,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.comparison.curve_files.lsdyna import NODOUT, RBDOUT, UNITS, table
-from tipoff.comparison.curve_files.table import Table, chosen
 from tipoff.faults import Fault, SceneError
 from tipoff.files import open_input
+from tipoff.formats.curves.nodout import NODOUT, RBDOUT, UNITS, table_of_states
+from tipoff.formats.curves.record import Asked, CurveFile, CurveFormat, CurveTable, chosen_body
 
 _HEADER = 8
 _CD, _DATA = 2, 3
@@ -72,13 +72,13 @@ def parts(path: str | Path) -> list[Path]:
     return [path, *sorted(found, key=lambda part: (len(part.name), part.name))]
 
 
-def read(path: str | Path, body: str | None) -> Table:
-    """The motion of one ``body`` or node. Raises SceneError, and OSError for a file that cannot be
+def read_binout(file: CurveFile, asked: Asked) -> CurveTable:
+    """The motion of one body or node. Raises SceneError, and OSError for a file that cannot be
     read."""
-    source = str(path)
+    source, body = file.source, asked.body
     with ExitStack() as opened:
         folders: dict[tuple[str, str], dict[str, _Numbers]] = {}
-        for part in parts(path):
+        for part in parts(file.path):
             stream = opened.enter_context(open_input(part))
             for branch, folder, name, numbers in _records(str(part), stream):
                 folders.setdefault((branch, folder), {})[name] = numbers
@@ -92,12 +92,12 @@ def read(path: str | Path, body: str | None) -> Table:
             given = "no rbdout and no nodout"
             words = "one of them: *DATABASE_RBDOUT or *DATABASE_NODOUT in the model"
             raise SceneError([Fault(source, "file", given, words)])
-        branch, place = names[chosen(source, body, list(names))]
+        branch, place = names[chosen_body(source, body, list(names))]
         states = [
             _state(source, folders[branch, folder], list(UNITS[branch]), place)
             for folder in _in_order(folder for own, folder in folders if own == branch)
         ]
-    return table(source, branch, states)
+    return table_of_states(source, branch, states)
 
 
 def _records(source: str, stream: io.BufferedReader) -> Iterator[tuple[str, str, str, _Numbers]]:
@@ -190,3 +190,22 @@ def _values(numbers: _Numbers, first: int, count: int) -> np.ndarray:
     count = max(0, min(count, numbers.size - first))
     numbers.stream.seek(numbers.place + first * numbers.kind.itemsize)
     return np.frombuffer(numbers.stream.read(count * numbers.kind.itemsize), numbers.kind)
+
+
+FORMATS = (
+    CurveFormat(
+        "binout of LS-DYNA",
+        read_binout,
+        [
+            (
+                "LS-DYNA `binout`, LSDA",
+                "the branches `rbdout` and `nodout`, with the same columns",
+                '`7`, or `"rbdout 7"`, `"nodout 1001"` if both have the number',
+                '`--units "time=ms, length=mm"`',
+                "scene",
+            )
+        ],
+        begins=is_one,
+        parts=parts,
+    ),
+)

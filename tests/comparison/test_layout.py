@@ -2,7 +2,7 @@
 
 import pytest
 
-from tipoff.comparison.curve_files.layout import Layout, of_options
+from tipoff.comparison.layout import Layout, of_options
 from tipoff.faults import SceneError
 
 

@@ -1,1 +1,0 @@
-"""Files with curves of other codes: tables of text, LS-DYNA, Adams. ``reading`` is the entry."""

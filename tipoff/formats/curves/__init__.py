@@ -1,0 +1,1 @@
+"""Curves over time that other codes and tests write. ``reader`` is the entry."""
