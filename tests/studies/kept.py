@@ -28,9 +28,10 @@ from tipoff.files import read_json
 from tipoff.studies import cli, registry
 from tipoff.studies.render import document
 from tipoff.studies.report.page import Page
+from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.figures import Runs
 from tipoff.workspace.settings import defaults
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 
 FOLDER = Path(__file__).parent / "kept" / "tiny"
@@ -74,7 +75,7 @@ def study() -> Study:
     return Study(scenes.load("tiny"), FOLDER, defaults("tiny"))
 
 
-def documents() -> dict[str, Any]:
+def results() -> dict[str, Any]:
     """The results by the names that the page has for them, whatever code made them."""
 
     def of_any_key(study: Study, name: str, key: Any) -> dict | None:
@@ -82,11 +83,15 @@ def documents() -> dict[str, Any]:
         return read_json(path) if path.exists() else None
 
     here = study()
+    stages = {stage.name: stage for _, stage in modules()} | runs.STAGES
+
+    def made(name: str) -> Made | None:
+        found = of_any_key(here, name, None)
+        return found and stages[name].made(found)
+
     with mock.patch.object(Study, "stored", of_any_key):
         return {
-            result.name: (
-                result.stored(here) if result.stored else of_any_key(here, result.name, None)
-            )
+            result.name: (result.stored(here) if result.stored else made(result.name))
             for result in registry.results()
         }
 
@@ -94,7 +99,7 @@ def documents() -> dict[str, Any]:
 @mock.patch.dict(os.environ, COLUMNS="120")
 def texts() -> dict[str, str]:
     """All texts, by the names of their files."""
-    page = Page(study().scene, OUT, documents(), Runs({}, {}), {})
+    page = Page(study().scene, OUT, results(), Runs({}, {}), {})
     found = {
         f"page/{section.anchor}.md": document.markdown([*_heading(section), *section.draw(page)])
         for section in registry.sections()
@@ -102,11 +107,9 @@ def texts() -> dict[str, str]:
     for module, stage in modules():
         shown = import_module(f"{module.__package__}.page")
         draw = getattr(shown, "terminal", None) if module.__name__.endswith(".stage") else None
-        if draw is not None and (result := page.documents.get(stage.name)):
+        if draw is not None and (result := page.results.get(stage.name)):
             place = [OUT] * (len(signature(draw).parameters) - 1)  # where the files are said to lie
-            found[f"terminal/{stage.name}.txt"] = document.terminal(
-                draw(stage.read(result), *place)
-            )
+            found[f"terminal/{stage.name}.txt"] = document.terminal(draw(result.result, *place))
     group: Any = typer.main.get_command(cli.app)
     for name in sorted(group.commands):
         asked = CliRunner().invoke(cli.app, [name, "--help"])

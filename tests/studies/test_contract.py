@@ -110,7 +110,7 @@ def test_a_command_prints_the_text_or_the_result(module, stage, tmp_path, monkey
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "120")
     found = json.loads((kept.FOLDER / f"{stage.name}.json").read_text())
-    monkeypatch.setattr(module, "run", lambda *_: found)
+    monkeypatch.setattr(module, "run", lambda *_: stage.made(found))
     folder = module.__package__.rpartition(".")[2]
     asked = [*WORDS.get(folder, [folder]), "--scene", "tiny", "--out", "out"]
     said = CliRunner().invoke(app, asked, catch_exceptions=False)

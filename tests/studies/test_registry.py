@@ -10,11 +10,11 @@ from typer.testing import CliRunner
 
 from tipoff import scenes
 from tipoff.studies import registry
-from tipoff.studies.agreement import stage as compare
 from tipoff.studies.question import Result
 from tipoff.studies.report import assembly
 from tipoff.studies.report import stage as report
 from tipoff.workspace.settings import defaults
+from tipoff.workspace.stage import Made
 from tipoff.workspace.study import Study
 
 OPTIONS = """
@@ -143,19 +143,21 @@ def test_the_report_makes_it_with_every(entry, study, monkeypatch):
     )
 
 
-def test_a_first_page_is_there_before_the_comparison(study, monkeypatch):
-    """It names what is still being made. Control: with a stored comparison only the whole page is
+def test_the_page_is_written_as_results_arrive(study, monkeypatch):
+    """It names what is still being made. Control: of results that take a moment, only the whole page is
     written."""
-    names, seen = ("nominal", "agreement", "cost", "stability"), []
-    page = study.path("report.html")
+    names, seen, lasting = ("nominal", "agreement", "cost", "stability"), [], {"cost": 1.0}
+    page, now = study.path("report.html"), [0.0]
 
     def made(name):
         def make(study):
             seen.append(page.read_text() if page.exists() else None)
-            return {"key": name, "failed": []}
+            now[0] += lasting.get(name, 11.0)
+            return Made(None, {"key": name, "failed": []})
 
         return Result(name, make)
 
+    monkeypatch.setattr(report.time, "monotonic", lambda: now[0])
     monkeypatch.setattr(report, "results", lambda: [made(name) for name in names])
     monkeypatch.setattr(assembly, "render", lambda page: f"made {', '.join(page.problems)}.")
     for name in ("_answer", "_verdict"):
@@ -170,6 +172,6 @@ def test_a_first_page_is_there_before_the_comparison(study, monkeypatch):
 
     page.unlink()
     seen.clear()
-    monkeypatch.setattr(type(compare.STAGE), "stored", lambda *_: {})
+    lasting.update(dict.fromkeys(names, 1.0))
     report.run(study)
     assert seen == [None] * 4

@@ -12,6 +12,7 @@ from tipoff.studies.commands.running import Output
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
     from tipoff.studies.report.page import Page
+    from tipoff.workspace.stage import Made
     from tipoff.workspace.study import Study
 
 
@@ -25,9 +26,9 @@ class Result(NamedTuple):
     """
 
     name: str
-    run: Callable[["Study"], dict] | None = None
-    stored: Callable[["Study"], Any] | None = None
-    within: Callable[["Study", tuple[str, ...]], dict] | None = None
+    run: "Callable[[Study], Made] | None" = None
+    stored: "Callable[[Study], Any] | None" = None
+    within: "Callable[[Study, tuple[str, ...]], Made] | None" = None
 
 
 class Section(NamedTuple):
@@ -99,17 +100,15 @@ class Question(Entry):
                 study = request.study()
             found = stage.run(study, *([] if options is None else [options]))
             shown = getattr(page, "terminal", page.draw)
-            return Output(found, lambda found: shown(stage.STAGE.read(found)), request.out)
+            return Output.of(found, shown, request.out)
 
         def contents() -> Contents:
             stage, page = modules()
 
             def section(shown: "Page") -> "list[Part]":
-                return shown.shown(
-                    stage.STAGE.name, lambda found: page.draw(stage.STAGE.read(found)), name
-                )
+                return shown.shown(stage.STAGE, page.draw, name)
 
-            def within(study: "Study", limits: tuple[str, ...]) -> dict:
+            def within(study: "Study", limits: tuple[str, ...]) -> "Made":
                 return stage.run(study, options(limits=limits) if options else None)
 
             stored = None if always else getattr(stage, "stored", stage.STAGE.stored)

@@ -7,7 +7,7 @@ A stage of a study is written like this:
         mass_kg: float
         rows: tuple[Row, ...]  # Row is another dataclass
 
-    def run(study: Study, options: Options = Options()) -> dict:
+    def run(study: Study, options: Options = Options()) -> Made[Heavier]:
         def make() -> tuple[Heavier, list[Path]]:
             ...
             return Heavier(mass, rows), files  # and what was written
@@ -16,10 +16,9 @@ A stage of a study is written like this:
 
     STAGE = Stage("heavier", __name__, Options, result=Heavier)
 
-``run`` returns the content of the result file, and ``STAGE.read`` converts it to ``Heavier``. Each
-tuple of dataclasses is also written as a CSV file. ``STAGE.stored(study)`` finds a
-result of the present scene, code and settings, with any options. ``studies/ablation`` is an
-example, ``studies/limits`` one with further ``inputs``.
+``run`` returns a ``Made`` with ``Heavier`` as its ``result``. Each tuple of dataclasses is also
+written as a CSV file. ``STAGE.stored(study)`` finds a result of the present scene, code and settings,
+with any options. ``studies/ablation`` is an example, ``studies/limits`` one with further ``inputs``.
 """
 
 import csv
@@ -30,7 +29,7 @@ import typing
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from pydantic import TypeAdapter
 
@@ -41,6 +40,20 @@ from tipoff.workspace.study import Study
 
 _AXES = ("x", "y", "z")
 _MOST = 12  # numbers that may stand in one row; more are a curve
+_Result = TypeVar("_Result")
+
+
+class Made(NamedTuple, Generic[_Result]):
+    """A ``result``, and the ``document`` of its file: the result as JSON values with its options, key
+    and files."""
+
+    result: _Result
+    document: dict
+
+    @property
+    def key(self) -> str:
+        """Digest of everything that determines the result."""
+        return self.document["key"]
 
 
 def _nothing(study: Study, options: Any) -> None:
@@ -48,7 +61,7 @@ def _nothing(study: Study, options: Any) -> None:
 
 
 @dataclass(frozen=True)
-class Stage:
+class Stage(Generic[_Result]):
     """One stage."""
 
     name: str  # of the result file
@@ -60,7 +73,7 @@ class Stage:
     # KeyError, TypeError or ValueError if there are none.
     inputs: Callable[[Study, Any], Any] = _nothing
     field: str = "asked"  # key of the options in the result
-    result: Any = None  # type: a frozen dataclass; None for JSON values without one
+    result: type[_Result] | None = None  # a frozen dataclass; None for JSON values without one
     of_scene: bool = True  # whether the result depends on the scene and the settings
 
     def plain(self, options: Any) -> Any:
@@ -74,42 +87,49 @@ class Stage:
         inputs = self.inputs(study, options)
         return study.key(self.module, self.name, self.plain(options), inputs)
 
-    def run(self, study: Study, options: Any, make: Callable[[], tuple[Any, list[Path]]]) -> dict:
-        """The content of the result file: the stored one if nothing changed, else that of ``make``,
-        which returns the result and the files that it wrote. A result without a type must contain
-        ``plain(options)`` under ``field``. Raises SceneError if an option breaks its rule."""
+    def run(
+        self, study: Study, options: Any, make: Callable[[], tuple[_Result, list[Path]]]
+    ) -> Made[_Result]:
+        """The stored result if nothing changed, else that of ``make``, which returns the result and the
+        files that it wrote. A result without a type must contain ``plain(options)`` under
+        ``field``. Raises SceneError if an option breaks its rule."""
         if dataclasses.is_dataclass(options):
             rules.require(options)
 
         def document() -> tuple[dict, list[Path]]:
             found, files = make()
             if self.result is None:
-                return found, files
+                return found, files  # type: ignore[return-value]
             plain = self.content(found)
             asked = {} if self.options is None else {self.field: self.plain(options)}
             return asked | plain, [*files, *self._tables(study, plain)]
 
-        return study.stage(self.name, self.key(study, options), document)
+        return self.made(study.stage(self.name, self.key(study, options), document))
 
-    def read(self, found: dict) -> Any:
-        """The ``result`` in the content of a result file. Raises ValueError if it is missing."""
-        return found if self.result is None else _adapter(self.result).validate_python(found)
+    def read(self, document: dict) -> _Result:
+        """The result in the ``document`` of a file. Raises ValueError if it is missing."""
+        return document if self.result is None else _adapter(self.result).validate_python(document)  # type: ignore[return-value]
 
-    def content(self, result: Any) -> dict:
+    def made(self, document: dict) -> Made[_Result]:
+        """The result of a file with its ``document``. Raises ValueError if it is missing."""
+        return Made(self.read(document), document)
+
+    def content(self, result: _Result) -> dict:
         """A ``result`` as JSON values."""
         return _adapter(self.result).dump_python(result, mode="json", by_alias=True)
 
-    def asked(self, found: dict) -> Any:
+    def asked(self, document: dict) -> Any:
         """The options of a stored result. Raises ValueError if they are not valid now."""
-        return _adapter(self.options).validate_python(found.get(self.field))
+        return _adapter(self.options).validate_python(document.get(self.field))
 
-    def stored(self, study: Study) -> dict | None:
+    def stored(self, study: Study) -> Made[_Result] | None:
         """The stored result if it was made from the present scene, code and settings, else None."""
 
-        def key(found: dict) -> str:
-            return self.key(study, self.asked(found))
+        def key(document: dict) -> str:
+            return self.key(study, self.asked(document))
 
-        return study.stored(self.name, key)
+        found = study.stored(self.name, key)
+        return None if found is None else self.made(found)
 
     def schema(self) -> dict:
         """JSON schema of the result."""
@@ -202,6 +222,4 @@ def _text(value: Any) -> str:
     return "" if value is None else str(value)
 
 
-@functools.cache
-def _adapter(kind: Any) -> TypeAdapter:
-    return TypeAdapter(kind)
+_adapter: Callable[[Any], TypeAdapter] = functools.cache(TypeAdapter)

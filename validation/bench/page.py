@@ -32,7 +32,7 @@ _SURROGATE: Cells = (
 
 def draw(page: "Page") -> list[Part]:
     """Both solvers and their baselines; empty without a benchmark."""
-    found = page.documents.get("bench") or {}
+    found = page.results.get("bench") or {}
     parts: list[Part] = [_reference(found["rows"])] if found.get("rows") else []
     return [*parts, _surrogate(found["lowfi"])] if found.get("lowfi") else parts
 

@@ -4,6 +4,8 @@ A part is the difference of two times: of steps with it and without it. Pads are
 ``reference``; without contact, every face waits; without joints, the rails have none under any node;
 without stepped rails, only bodies, loads and ledgers are left. Elements are timed by themselves, and the
 motion of the nodes is the rest. A sample, with its checks, is divided by the steps from one to the next.
+Each repeat gives all times by turns, and so each difference; half the range of the differences is the error
+of a part. A part below its error is not resolved.
 """
 
 import statistics
@@ -17,6 +19,7 @@ from tipoff.files import write_json
 from tipoff.highfi.dynamics import substeps
 from tipoff.scenes.scene import load
 from tipoff.studies.render.table import Cells, Column, Table
+from tipoff.studies.render.uncertain import Measured, rounded
 from tipoff.workspace import machine
 from tipoff.workspace.progress import say
 from validation.bench import done
@@ -29,18 +32,23 @@ _NEVER = 2**40  # steps for which a face waits
 _COLUMNS: Cells = (
     (Column("element size", "mm", "g", 1e3), "element_size_m"),
     ("elements", "elements"),
-    (Column("one step", "us", ".1f"), "step_us"),
-    (Column("elements", "us", ".1f"), "elements_us"),
-    (Column("nodes", "us", ".1f"), "nodes_us"),
-    (Column("joints", "us", ".1f"), "joints_us"),
-    (Column("contact", "us", ".1f"), "contact_us"),
-    (Column("bodies, ledgers", "us", ".1f"), "bodies_us"),
-    (Column("samples, checks", "us", ".1f"), "samples_us"),
+    *(
+        (Column(title, "us"), lambda row, name=name: _part(row, name))
+        for title, name in (
+            ("one step", "step"),
+            ("elements", "elements"),
+            ("nodes", "nodes"),
+            ("joints", "joints"),
+            ("contact", "contact"),
+            ("bodies, ledgers", "bodies"),
+            ("samples, checks", "samples"),
+        )
+    ),
 )
 
 
 def run(out: Path, repeats: int, sizes: tuple[float, ...] = SIZES) -> dict:
-    """``rows``, one for each element size (m), medians of ``repeats``; writes
+    """``rows``, one for each element size (m), medians of ``repeats`` with their errors (us); writes
     ``out``/bench/parts.json."""
     rows = []
     for size in sizes:
@@ -55,10 +63,18 @@ def table(found: dict) -> Table:
     """All rows."""
     note = (
         "Parts of one step of the finite elements with all rails stepped and eight pad faces pressed, "
-        f"processor time of one thread, median of {found['repeats']} repeats of {_STEPS} steps. Samples and checks are "
-        "divided by the steps from one sample to the next, and are not in the time of the step."
+        f"processor time of one thread, median and half the range of {found['repeats']} repeats of {_STEPS} steps. "
+        "Samples and checks are divided by the steps from one sample to the next, and are not in the time of the step."
     )
     return Table.of(found["rows"], _COLUMNS, notes=(note,))
+
+
+def _part(row: dict, name: str) -> Measured | str:
+    """The time of a part with its error; its largest time in words if it is below the error."""
+    value, error = row[f"{name}_us"], row[f"{name}_error_us"]
+    if value < error:
+        return f"at most {rounded(abs(value) + error, error)}"
+    return Measured(value, error)
 
 
 def _measured(size: float, repeats: int) -> dict:
@@ -87,23 +103,25 @@ def _measured(size: float, repeats: int) -> dict:
     for _ in range(repeats):
         for name, call in calls.items():
             times[name].append(1e6 * call())
-    median = {name: statistics.median(values) for name, values in times.items()}
     elements = len(system.mesh.cells)
     for name in ("step", "free", "loose", "elements"):
-        spent = 1e3 * median[name] / elements
+        spent = 1e3 * statistics.median(times[name]) / elements
         done.require_at_least(f"ns per element and step, {name}", spent, done.SHORTEST)
-    return {
-        "element_size_m": size,
-        "elements": elements,
-        "steps_timed": _STEPS,
-        "step_us": median["step"],
-        "elements_us": median["elements"],
-        "nodes_us": median["loose"] - median["bodies"] - median["elements"],
-        "joints_us": median["free"] - median["loose"],
-        "contact_us": median["step"] - median["free"],
-        "bodies_us": median["bodies"],
-        "samples_us": median["sample"] / stepping.steps_per_sample,
+    spent_on = {name: np.array(values) for name, values in times.items()}
+    parts = {
+        "step": spent_on["step"],
+        "elements": spent_on["elements"],
+        "nodes": spent_on["loose"] - spent_on["bodies"] - spent_on["elements"],
+        "joints": spent_on["free"] - spent_on["loose"],
+        "contact": spent_on["step"] - spent_on["free"],
+        "bodies": spent_on["bodies"],
+        "samples": spent_on["sample"] / stepping.steps_per_sample,
     }
+    found = {"element_size_m": size, "elements": elements, "steps_timed": _STEPS}
+    for name, values in parts.items():
+        found[f"{name}_us"] = float(np.median(values))
+        found[f"{name}_error_us"] = 0.5 * float(np.ptp(values))
+    return found
 
 
 def _without_joints(rail):

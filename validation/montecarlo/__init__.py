@@ -28,18 +28,15 @@ _DRAWS = 60  # of the reference, by the report
 def _answer(request: Request, options: Options) -> Output:
     from validation.montecarlo import page, stage, tails, tails_page
 
-    def shown(found: dict) -> "list[Part]":
-        checked = found.get("reference")
-        own = page.summary(stage.STAGE.read(found))
-        return own + (tails_page.summary(tails.STAGE.read(checked)) if checked else [])
-
     _require(options)
     study = request.study()
     if options.draws is None:
-        return Output(stage.run(study, options.population), shown, request.out)
+        return Output.of(stage.run(study, options.population), page.summary, request.out)
     tails.checked(study, options)
-    found = {**stage.run(study, options.population), "reference": tails.run(study, options)}
-    return Output(found, shown, request.out)
+    found, checked = stage.run(study, options.population), tails.run(study, options)
+    parts = [*page.summary(found.result), *tails_page.summary(checked.result)]
+    document = {**found.document, "reference": checked.document}
+    return Output(document, lambda _: parts, request.out)
 
 
 def _require(options: Options) -> None:
@@ -61,13 +58,10 @@ def _load() -> Contents:
     from validation.montecarlo import page, stage, tails, tails_page
 
     def errors(shown: "Page") -> "list[Part]":
-        return shown.shown(stage.NAME, lambda found: page.draw(stage.STAGE.read(found)), stage.NAME)
+        return shown.shown(stage.STAGE, page.draw, stage.NAME)
 
     def corrected(shown: "Page") -> "list[Part]":
-        command = f"{stage.NAME} --reference {_DRAWS}"
-        return shown.shown(
-            tails.NAME, lambda found: tails_page.draw(tails.STAGE.read(found)), command
-        )
+        return shown.shown(tails.STAGE, tails_page.draw, f"{stage.NAME} --reference {_DRAWS}")
 
     return Contents(
         (

@@ -18,7 +18,7 @@ from tipoff.studies.limits import within
 from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
 from tipoff.studies.populations.population import Population
 from tipoff.studies.populations.random_factors import READINGS
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError
 from validation.montecarlo.options import Cases
 from validation.montecarlo.results import (
@@ -40,8 +40,8 @@ _SHARES = (0.5, 0.95, 0.99)
 _RATES = (*answers.RATES, answers.TOTAL_RATE)
 
 
-def run(study: Study, options: Cases = Cases()) -> dict:
-    """The content of ``MonteCarlo``.
+def run(study: Study, options: Cases = Cases()) -> Made[MonteCarlo]:
+    """The rates under random errors.
 
     Raises SceneError for bad input, and StudyError where fewer than two cases settle.
     """
@@ -90,7 +90,7 @@ def run(study: Study, options: Cases = Cases()) -> dict:
 def fitted(study: Study, _options: object) -> str | None:
     """Key of the calibration, with which both models are compared; None without one."""
     found = calibrate.stored(study)
-    return found["key"] if found else None
+    return found.key if found else None
 
 
 STAGE = Stage(NAME, __name__, options=Cases, inputs=fitted, result=MonteCarlo)

@@ -14,7 +14,7 @@ from tipoff.studies.populations import answers, exceedance, population, random_f
 from tipoff.studies.populations import draws as paired
 from tipoff.studies.populations.draws import Draws
 from tipoff.studies.populations.population import Population
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
 from validation.montecarlo import control_variate, paired_statistics, rungs
@@ -27,8 +27,8 @@ NAME = "tails"
 FEWEST = 10  # draws; fewer give no useful interval
 
 
-def run(study: Study, options: Options) -> dict:
-    """The content of ``Tails``.
+def run(study: Study, options: Options) -> Made[Tails]:
+    """Rates and tails, corrected by the reference.
 
     Raises SceneError for bad input, every fault listed, and StudyError where too few cases settle.
     """

@@ -22,7 +22,7 @@ from tipoff.studies import published
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.render.document import with_figures
 from tipoff.workspace.progress import Board, team
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
 from validation.paper import (
@@ -53,7 +53,7 @@ class Options:
     plan: solutions.Plan = solutions.Plan()
 
 
-def run(study: Study, options: Options = Options()) -> dict:
+def run(study: Study, options: Options = Options()) -> Made[dict]:
     """The searches, the ranges of every input, and the best set with the printed tables; writes the
     best set as a scene, and every end and admissible point as netCDF.
 
@@ -96,7 +96,7 @@ def run(study: Study, options: Options = Options()) -> dict:
     return _with_present(study, STAGE.run(study, options, make))
 
 
-def stored(study: Study) -> dict | None:
+def stored(study: Study) -> Made[dict] | None:
     """The result, if it was made from the present scene, code and settings."""
     found = STAGE.stored(study)
     return found and _with_present(study, found)
@@ -241,18 +241,18 @@ def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Sea
     return [future.result() for future in pending]
 
 
-STAGE = Stage(NAME, __name__, options=Options)
+STAGE: Stage[dict] = Stage(NAME, __name__, options=Options)
 
 
-def _with_present(study: Study, found: dict) -> dict:
+def _with_present(study: Study, made: Made[dict]) -> Made[dict]:
     """The result with values that are not stored in it: the cost of both fidelities, if the present
     agreement study has it, and whether the best set is the catalogue's scene."""
-    kept = load(CATALOGUED)
+    found, kept = made.result, load(CATALOGUED)
     best = misfit.Launcher(_base(study.scene)).scene(
         inputs.shares(found["searches"][found["best"]]["values"])
     )
     ours = compare.stored(study)
-    return found | {
+    present = {
         "ours": ours and asdict(ours.speedup),
         "catalogue": {
             "name": kept.name,
@@ -260,3 +260,4 @@ def _with_present(study: Study, found: dict) -> dict:
             "description": kept.description,
         },
     }
+    return Made(found | present, made.document | present)

@@ -44,7 +44,7 @@ def stored(study: "Study") -> dict | None:
 
 def draw(page: "Page") -> list[Part]:
     """The section; empty if no peer was run."""
-    found = page.documents.get("peers")
+    found = page.results.get("peers")
     return parts(found["peers"]) if found else []
 
 

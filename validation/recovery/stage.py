@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tipoff.workspace.progress import Board
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError, require_success
 from tipoff.workspace.words import counted
 
@@ -34,7 +34,7 @@ class Options:
     seed: int = 0
 
 
-def run(study: Study, options: Options = Options()) -> dict:
+def run(study: Study, options: Options = Options()) -> Made[dict]:
     """``rows``: parameter, number of draws in which each interval contains the hidden value, number
     of draws that do not determine it, and the median half width (SI) of the others, None without
     any; ``held_out``: largest errors of the settled rates (deg/s) of a held-out condition, or of a
@@ -57,7 +57,7 @@ def run(study: Study, options: Options = Options()) -> dict:
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage("recovery", __name__, options=Options)
+STAGE: Stage[dict] = Stage("recovery", __name__, options=Options)
 
 
 def _drawn(study: Study, options: Options) -> dict:

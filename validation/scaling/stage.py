@@ -6,18 +6,18 @@ from pathlib import Path
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.cost import stage as cost
 from tipoff.workspace import machine
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 from validation.scaling import growth, trends
 from validation.scaling.results import Scaling
 
 
-def run(study: Study) -> dict:
-    """The content of ``Scaling``."""
+def run(study: Study) -> Made[Scaling]:
+    """Growth of the run time."""
     name = cost.condition(study)
 
     def make() -> tuple[Scaling, list[Path]]:
-        without = ablation.STAGE.read(ablation.run(study))
+        without = ablation.run(study).result
         found = Scaling(
             condition=name,
             elements=growth.elements(study, name),

@@ -10,7 +10,7 @@ from tipoff.studies.agreement.options import Options
 from tipoff.studies.question import Result
 from tipoff.studies.report import stage as report
 from tipoff.workspace.settings import defaults
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 
 
@@ -23,7 +23,7 @@ def test_the_number_is_that_asked_for_or_of_the_settings(
 ):
     """Whatever is stored. Control: the page shows what is stored, and makes the rest."""
     study = Study(load("tiny"), tmp_path, defaults("tiny"))
-    found = None if stored is None else {"asked": {"neighbours": stored}}
+    found = None if stored is None else Made(None, {"asked": {"neighbours": stored}})
     monkeypatch.setattr(stage, "candidates", lambda _: (None,) * 4)
     monkeypatch.setattr(Stage, "stored", lambda *_: found)
     monkeypatch.setattr(Stage, "run", lambda own, _, options, make: own.plain(options))

@@ -127,7 +127,7 @@ def test_conditions_that_no_single_run_can_judge_are_judged_as_distributions(stu
     """As in the agreement study, and both models agree there. Control: a condition that 1 um and the
     mesh do not move stays a curve, without neighbours."""
     study, asked = stubbed
-    found = blind.run(study, Options(cases=3, seed=1, neighbours=32))
+    found = blind.run(study, Options(cases=3, seed=1, neighbours=32)).document
     for model in ("calibrated", "compliant"):
         assert [(row["condition"], row["judged_as"], row["judgement"]) for row in found[model]] == [
             ("blind1", "distribution", verdicts.AS_DISTRIBUTION),
@@ -150,8 +150,8 @@ def test_conditions_that_no_single_run_can_judge_are_judged_as_distributions(stu
 
 
 def test_the_number_of_neighbours_is_that_of_the_settings_unless_one_is_given(stubbed):
-    found = blind.run(stubbed[0], Options(cases=3, seed=1))
-    assert [item["neighbours"] for item in found["distributions"]] == [5, 5]
-    parts = page.draw(blind.STAGE.read(found))
+    found = blind.run(stubbed[0], Options(cases=3, seed=1)).result
+    assert [item.neighbours for item in found.distributions] == [5, 5]
+    parts = page.draw(found)
     (figure,) = [part for part in parts if isinstance(part, document.Figure)]
     assert figure.chart.name == "blind-distributions"  # the agreement study has the other

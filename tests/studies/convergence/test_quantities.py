@@ -19,7 +19,7 @@ from tipoff.workspace.study import Study
 
 def test_a_deflection_of_first_order_stands_beside_the_rates(finished):
     """As at the edge of a rigid mount: what is left is more than the last change."""
-    found = stub.row(convergence.STAGE.read(finished[1]), "element size", "deflection under 100 N")
+    found = stub.row(finished[1].result, "element size", "deflection under 100 N")
     assert found.values == pytest.approx([8.4, 9.2, 9.6]) and found.unit == "µm"
     assert found.order == pytest.approx(1.0) and found.method == "GCI"
     assert found.uncertainty == pytest.approx(1.25 * 0.4)
@@ -27,7 +27,7 @@ def test_a_deflection_of_first_order_stands_beside_the_rates(finished):
 
 
 def test_loads_of_the_one_pad_that_touches(finished):
-    found = convergence.STAGE.read(finished[1])
+    found = finished[1].result
     names = [item.quantity for item in found.quantities if item.parameter == "element size"]
     assert names == [
         "settled rate x",
@@ -64,7 +64,7 @@ def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch
     monkeypatch.setattr(store_module, "execute", execute)
     study = Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
     written = convergence.run(study)
-    found = convergence.STAGE.read(written)
+    found = written.result
     patch = stub.row(found, "element size", "patch stress below 1 kHz")
     assert (patch.unit, patch.order) == ("MPa", pytest.approx(2.0, abs=1e-6))
     assert patch.uncertainty == pytest.approx(1.25 * 0.016, rel=1e-6)
@@ -95,9 +95,7 @@ def test_the_peak_is_judged_on_a_fillet_and_joints(tmp_path, monkeypatch, asked)
     joints = {"rail.mount_stiffness.normal": 1e13, "rail.mount_stiffness.shear": 5e12}
     scene = scenes.load("tiny").replace({f"pads.{pad}.inset": 10e-3 for pad in range(8)})
     smooth = scene.replace({"rail.fillet": 2e-3} | joints)
-    found = convergence.STAGE.read(
-        convergence.run(Study(smooth, tmp_path / "tiny", defaults("tiny")))
-    )
+    found = convergence.run(Study(smooth, tmp_path / "tiny", defaults("tiny"))).result
     peak = stub.row(found, "element size", "peak stress of the rail")
     assert (peak.order, peak.method) == (pytest.approx(2.0, abs=1e-6), "GCI")
     assert peak.uncertainty == pytest.approx(1.25 * 0.016, rel=1e-6)

@@ -23,7 +23,7 @@ from tipoff.workspace.study import Study, StudyError
 
 def made(study) -> convergence.Convergence:
     """The result of a run."""
-    return convergence.STAGE.read(convergence.run(study))
+    return convergence.run(study).result
 
 
 def page_of(study, found):
@@ -32,7 +32,7 @@ def page_of(study, found):
 
 
 def test_order_and_uncertainty_of_a_law_of_second_order(finished):
-    found = convergence.STAGE.read(finished[1])
+    found = finished[1].result
     x = stub.row(found, "element size", "settled rate x")
     assert (x.unit, x.size_unit, x.sizes) == ("deg/s", "m", [0.016, 0.008, 0.004])
     assert x.order == pytest.approx(2.0, abs=1e-9)
@@ -48,7 +48,7 @@ def test_order_and_uncertainty_of_a_law_of_second_order(finished):
 
 
 def test_values_without_order_are_told_apart(finished):
-    found = convergence.STAGE.read(finished[1])
+    found = finished[1].result
     y = stub.row(found, "element size", "settled rate y")
     assert y.order is None and y.method == "not converged: changes do not fall"
     assert y.uncertainty == pytest.approx(3.0 * 0.3)
@@ -59,7 +59,7 @@ def test_values_without_order_are_told_apart(finished):
 
 
 def test_interface_stiffness_and_contact_cells_are_compared_with_the_nominal_run(finished):
-    found = convergence.STAGE.read(finished[1])
+    found = finished[1].result
     assert [item.factor for item in found.interface_stiffness] == [0.25, 1.0, 4.0, 16.0]
     assert [item.settled_rate_change_deg_s for item in found.interface_stiffness] == pytest.approx(
         [0.02, 0.0, 0.02, 0.04]
@@ -78,7 +78,7 @@ def test_interface_stiffness_and_contact_cells_are_compared_with_the_nominal_run
 
 def test_ripple_of_both_meshes_beside_that_of_few_cells(finished):
     study, written = finished
-    found = convergence.STAGE.read(written)
+    found = written.result
     assert [(row.element_size_m, row.cells_per_edge, row.ripple) for row in found.ripple] == [
         (0.016, 3, 0.04 / 3),
         (0.016, 16, 0.0025),
@@ -133,7 +133,7 @@ def test_no_run_is_made_twice_and_none_again(study, asked):
     del asked[:]
     convergence.run(study)
     assert asked == []
-    assert convergence.run(study, Options("phi60"))["condition"] == "phi60" and len(asked) == 11
+    assert convergence.run(study, Options("phi60")).result.condition == "phi60" and len(asked) == 11
 
 
 def test_four_meshes_of_the_reference():
@@ -189,7 +189,7 @@ def test_stored_result_counts_only_while_nothing_changed(study):
 
 def test_page_shows_the_study_only_where_there_is_one(finished):
     study, written = finished
-    found, page = convergence.STAGE.read(written), page_of(study, written)
+    found, page = written.result, page_of(study, written)
     shown = document.html(convergence_page.draw(page), page.figure)
     assert 'id="chart-convergence"' in shown
     assert all(f"{inline(line[1:])}." in shown for line in sentences(found))

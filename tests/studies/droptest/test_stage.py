@@ -73,7 +73,7 @@ def test_shipped_logs_from_command_to_page(tmp_path, fitted, figures):
     again = call("--cases", 200, "--out", tmp_path, "--json")
     assert json.loads(again.stdout) == found and "nothing changed" in again.stderr
     study = Study(load("reference"), tmp_path / "reference", Settings(), ())
-    assert stage.STAGE.stored(study)["tests"] == found["tests"]
+    assert stage.STAGE.stored(study).document["tests"] == found["tests"]
     assert (
         stage.STAGE.stored(
             Study(
@@ -133,24 +133,24 @@ def test_a_result_is_current_as_long_as_its_logs_are(tmp_path, fitted, monkeypat
     undrawn(monkeypatch)
     monday, tuesday = _tests_in(tmp_path, "monday", "tuesday")
     study = Study(load("reference"), tmp_path / "reference", Settings())
-    found = stage.run(study, stage.Options((monday, tuesday), cases=60, model="springs"))
+    made = stage.run(study, stage.Options((monday, tuesday), cases=60, model="springs"))
+    found = made.document
     assert [row["test"] for row in found["tests"]] == ["monday/log", "tuesday/log"]
     for row, path in zip(found["tests"], (monday, tuesday)):  # groups of groups
         _require_signals(study.path(found["data"]), row, stage.analyse(path))
     table, moved = tuesday.with_name("simulated0.csv"), tuesday.with_name("other.toml")
-    assert stage.STAGE.stored(study) == found
+    assert stage.STAGE.stored(study) == made
     table.write_text(TABLE.replace("0.100,", "0.1001,"))
     assert stage.STAGE.stored(study) is None
     table.unlink()
     assert stage.STAGE.stored(study) is None
     table.write_text(TABLE)
-    assert stage.STAGE.stored(study) == found
+    assert stage.STAGE.stored(study) == made
     tuesday.rename(moved)
     assert stage.STAGE.stored(study) is None
     renamed = stage.run(study, stage.Options((monday, moved), cases=60, model="springs"))
-    assert [row["test"] for row in renamed["tests"]] == ["log", "other"] and renamed[
-        "key"
-    ] != found["key"]
+    assert [row.test for row in renamed.result.tests] == ["log", "other"]
+    assert renamed.key != made.key
     assert stage.STAGE.stored(study) == renamed
 
 
@@ -189,11 +189,11 @@ def test_tests_are_judged_by_the_errors_condition_and_seed_that_are_asked_for(
     shown = document.terminal(page.terminal(stage.STAGE.read(other)))
     assert f"of condition phi60; errors of {errors}, seed 4" in shown
     study = Study(load("reference"), tmp_path / "reference", Settings())
-    assert stage.STAGE.stored(study) == other
+    assert stage.STAGE.stored(study).document == other
     errors.write_text(lines.format("0.1"))
     assert stage.STAGE.stored(study) is None
     errors.write_text(lines.format("0.001"))
-    assert stage.STAGE.stored(study) == other
+    assert stage.STAGE.stored(study).document == other
 
 
 def test_bad_errors_are_listed_beside_bad_logs(tmp_path):

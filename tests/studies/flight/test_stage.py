@@ -103,7 +103,7 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, figures
     study = Study(
         load("reference").replace({"flight.range": "1 km"}), folder, Settings(), ("phi35", "phi60")
     )
-    assert flight.STAGE.stored(study)["key"] == further["key"]
+    assert flight.STAGE.stored(study).key == further["key"]
     assert (
         flight.STAGE.stored(Study(load("reference"), folder, Settings(), ("phi35", "phi60")))
         is None

@@ -74,7 +74,7 @@ def found(study):
 
 def of(study, options):
     """The result of a study."""
-    return limits.STAGE.read(limits.run(study, options))
+    return limits.run(study, options).result
 
 
 def row_of(found, name):

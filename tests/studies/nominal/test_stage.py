@@ -52,7 +52,7 @@ def numbers(text: str) -> list[float]:
 def test_answer_and_range_of_a_launch_in_free_flight_are_those_of_the_closed_form(study):
     """In the result, and in the first figures of the page. Control: the range is not symmetric about the
     answer, so that no interval around it fits."""
-    found = stage.STAGE.read(stage.run(study))
+    found = stage.run(study).result
     rate = free_flight.RATE_PER_RADIAN * math.sin(TILT)
     values = {"rate_deg_s": rate, "rate_x_deg_s": 0.0, "rate_y_deg_s": 0.0, "rate_z_deg_s": -rate}
     for model in (FINITE_ELEMENTS, COMPLIANT):
@@ -107,7 +107,7 @@ def test_answer_and_range_of_a_small_launcher_are_those_of_its_runs(tmp_path):
     shown = json.loads(CliRunner().invoke(app, [*asked, "--out", str(out)]).stdout)
     scene = tipoff.load("tiny")
     study = Study(scene, out / "tiny", Settings(element_size=0.016, workers=1))
-    found = stage.run(study)
+    found = stage.run(study).document
     assert found["spread"]["ranges"] == shown["spread"]["ranges"]
     compliance = tipoff.compliance(scene, size)
     alone = tipoff.run(scene, compliance=compliance).outcome

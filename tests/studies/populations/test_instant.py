@@ -130,7 +130,7 @@ def test_a_sweep_compares_with_a_free_payload_at_the_same_instant(tmp_path):
     study = Study(scene, tmp_path, Settings(workers=1))
     for at in ("exit", "settled"):
         plain = sweeps.run(study, Options(angles=8, at=at))
-        launch = sweeps.STAGE.read(plain).launches[0]
+        launch = plain.result.launches[0]
         swept = next(each for each in launch.factors if each.name == "thrust_eccentricity")
         name = answers.TOTAL_RATE.name
         assert swept.departs_from_free_at is None

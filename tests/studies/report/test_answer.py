@@ -9,7 +9,7 @@ import pytest
 from tests.studies.agreement import made
 from tests.studies.agreement.made import ROW
 from tests.studies.convergence import stub
-from tests.studies.shown import html
+from tests.studies.shown import Documents, html
 from tests.studies.synthetic import COSTS, flight
 from tipoff import scenes
 from tipoff.studies.agreement import verdicts
@@ -48,7 +48,9 @@ def page(tmp_path):
     return Page(
         scenes.load("tiny"),
         tmp_path,
-        {"highfi": {"conditions": list(map(asdict, rows)), "failed": []}, "agreement": agreement},
+        Documents(
+            highfi={"conditions": list(map(asdict, rows)), "failed": []}, agreement=agreement
+        ),
         Runs({}, {}, {}),
         {},
         [Limit("x", 6.0), Limit("total", 50.0)],
@@ -76,7 +78,7 @@ def test_limits_that_the_user_gave(page):
 def test_limits_are_judged_at_the_exit_where_a_motor_burns_on(page):
     """As in ensembles. Control: 0.5 % of the impulse after the exit, and a condition without values
     there."""
-    rows = page.documents["highfi"]["conditions"]
+    rows = page.results["highfi"]["conditions"]
     for one in rows:
         exit_ = {"velocity_m_s": [1.0, 0.0, 0.0], "rate_deg_s": [2.0, 0.0, 0.0]}
         one |= {"impulse_after_exit": 0.7, "at_exit": exit_}
@@ -93,7 +95,7 @@ def test_limits_are_judged_at_the_exit_where_a_motor_burns_on(page):
 def test_limits_are_judged_by_the_range_that_replaces_a_value(page):
     """A neighbour of phi60 is above the limit, its own rate is not."""
     rates = [[1.0, 0.3, 0.4], [7.0, 0.3, 0.4]]
-    page.documents["agreement"]["distributions"] = [
+    page.results["agreement"]["distributions"] = [
         {
             "condition": "phi60",
             "neighbours": 2,
@@ -115,14 +117,14 @@ def test_agreement_speed_and_trust(page):
     assert "validated on a measured ejection" in shown
     assert re.search(r"Inputs: \d+ of \d+ values are assumed", shown)
     equal = replace(made.EQUAL, surer=False, element_size_m=4e-3)
-    page.documents["convergence"] = stub.document(equal=equal)
+    page.results["convergence"] = stub.document(equal=equal)
     assert "at least, at equal accuracy (mesh of 4 mm)" in html(answer.draw(page))
-    del page.documents["agreement"]
+    del page.results["agreement"]
     assert "Model: surrogate and finite elements were not compared" in html(answer.draw(page))
 
 
 def test_conditions_judged_as_distributions_are_said_apart(page):
-    rows = page.documents["agreement"]["compliant"]
+    rows = page.results["agreement"]["compliant"]
     rows[0] |= {"judged_as": verdicts.DISTRIBUTION, "judgement": verdicts.MISSES}
     shown = html(answer.draw(page))
     assert "<b>1 of 2</b><span>conditions agree, 0 cannot be judged, 1 misses: surr" in shown
@@ -146,7 +148,7 @@ def test_stated_changes_name_their_owner_and_have_four_digits(page):
 
 def test_rates_by_hand_stand_beside_those_of_the_run(page):
     assert "by hand" not in html(answer.draw(page))
-    rows = page.documents["highfi"]["conditions"]
+    rows = page.results["highfi"]["conditions"]
     rows[1] |= {"by_hand": {"rate_deg_s": [1.0004, 0.3, 0.4], "words": "no pad touches"}}
     shown = html(answer.draw(page))
     assert "by hand: roll, transverse (deg/s)" in shown and "1.000, 0.500" in shown
@@ -156,7 +158,7 @@ def test_rates_by_hand_stand_beside_those_of_the_run(page):
 def test_the_largest_rate_of_converged_conditions_is_said_where_another_is_larger(page):
     shown = html(answer.draw(page))
     assert "phi15, not converged; of the converged ones 1.000 ± &lt;0.001 (phi60)" in shown
-    page.documents["convergence"] = stub.document(speed=2e-3)
+    page.results["convergence"] = stub.document(speed=2e-3)
     assert "v_x (m/s), each ± 0.002 by mesh and step, measured on phi60" in html(answer.draw(page))
 
 
@@ -197,7 +199,7 @@ def test_a_spread_condition_has_its_range_over_neighbours(page):
     stands there."""
     assert "-28 ± 13" in html(answer.draw(page))
     rates = [[-31.0, 3.0, 4.0], [-12.0, 0.0, 2.0], [-25.0, 6.0, 8.0]]
-    page.documents["agreement"]["distributions"] = [
+    page.results["agreement"]["distributions"] = [
         {
             "condition": "phi15",
             "neighbours": 4,
@@ -218,7 +220,7 @@ def test_the_scene_itself_comes_first(page):
     assert html(answer.draw(page)).startswith('<div class="figures"><div><b>13.6457</b>')
     rates = {"rate_deg_s": 5.0, "rate_x_deg_s": 0.0, "rate_y_deg_s": 3.0, "rate_z_deg_s": 4.0}
     values = rates | {"velocity_x_m_s": 13.6457, "exit_time_ms": 19.1}
-    page.documents["nominal"] = {
+    page.results["nominal"] = {
         "rows": [],
         "at": "settled",
         "at_why": "because no impulse after the exit is known",

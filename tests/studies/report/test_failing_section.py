@@ -6,6 +6,7 @@ import pytest
 import typer
 from markupsafe import Markup
 
+from tests.studies.shown import STAGES
 from tipoff import scenes
 from tipoff.faults import Fault, SceneError
 from tipoff.studies import registry
@@ -125,7 +126,7 @@ def test_a_result_that_the_scene_does_not_allow_leaves_the_page(
         found = {"key": "k", "conditions": [], "failed": []}
         study.path("highfi.json").parent.mkdir(exist_ok=True)
         study.path("highfi.json").write_text("{}")
-        return found
+        return STAGES["highfi"].made(found)
 
     for names, code in ((["calibration", "highfi"], 2), (["highfi", "calibration"], 1)):
         listed = [Result(name, made if name == "highfi" else refused) for name in names]
@@ -153,7 +154,7 @@ def test_a_scene_without_conditions_to_compare_has_a_page_without_faults(
     def made(_):
         study.path("highfi.json").parent.mkdir(exist_ok=True)
         study.path("highfi.json").write_text("{}")
-        return {"key": "k", "conditions": [], "failed": []}
+        return STAGES["highfi"].made({"key": "k", "conditions": [], "failed": []})
 
     monkeypatch.setattr(stage, "results", lambda: [Result("highfi", made), *comparing])
     found, html = stage.run(study), study.path("report.html").read_text()

@@ -10,7 +10,7 @@ import pytest
 from tests.studies.agreement import made as agreement
 from tests.studies.calibration.test_page import FIT
 from tests.studies.cost.made import cost, point
-from tests.studies.shown import html
+from tests.studies.shown import Documents, html
 from tests.studies.synthetic import COSTS, flight
 from tipoff import scenes
 from tipoff.studies import registry
@@ -146,10 +146,9 @@ def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path
     made = Page(
         scene,
         tmp_path,
-        {
-            "highfi": {"key": "k", "conditions": list(map(asdict, rows)), "failed": []},
-            "rails": [other],
-        },
+        Documents(
+            highfi={"key": "k", "conditions": list(map(asdict, rows)), "failed": []}, rails=[other]
+        ),
         Runs(runs, {}, {}),
         {"calibration": "phi15 diverged"},
     )

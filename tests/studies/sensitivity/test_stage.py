@@ -116,7 +116,9 @@ def test_the_command(tiny, tmp_path, monkeypatch):
         for kind in ("png", "svg")
     } == {path.name for path in (tmp_path / "out" / "tiny" / "figures").iterdir()}
     assert (
-        sensitivity.STAGE.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny")))
+        sensitivity.STAGE.stored(
+            Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny"))
+        ).document
         == kept
     )
     monkeypatch.setattr(population, "surrogate", lambda *_: pytest.fail("made again"))

@@ -53,7 +53,7 @@ def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path,
         tmp_path / "reference",
         Settings(workers=1),
     )
-    found = sweeps.STAGE.read(sweeps.run(study, sweeps.Options(angles=8)))
+    found = sweeps.run(study, sweeps.Options(angles=8)).result
     for launch in found.launches:
         assert launch.cases == {"asked": 240, "ok": 240, "refused": 0, "failed": 0}
         assert launch.not_settled == 0

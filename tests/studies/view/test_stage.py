@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from tests.highfi.support import begun, stopped, tiny
 from tests.studies import kept
-from tests.studies.shown import html
+from tests.studies.shown import Documents, html
 from tipoff import scenes
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics import monitor
@@ -53,15 +53,17 @@ def touching():
 
 
 def test_without_pyvista_there_are_files_and_a_way_to_pictures(viewed):
-    study, found = viewed
+    study, made = viewed
+    found = made.document
     assert found["pictures"] == {} and "pip install pyvista" in found["without_pictures"]
     assert len(found["frames"]) == 7 and len(found["files"]) == 2 * 7 + 2  # run.pvd, table
-    assert view.run(study, Options("phi15", 7)) == found  # nothing changed, nothing made
-    assert view.stored(study) == [view.read(found)]
+    assert view.run(study, Options("phi15", 7)) == made  # nothing changed, nothing made
+    assert view.stored(study) == [made.result]
 
 
 def test_the_list_names_every_file_at_its_time(viewed):
-    study, found = viewed
+    study, made = viewed
+    found = made.document
     listed = ElementTree.parse(study.path(found["collection"])).getroot()
     assert (listed.tag, listed.get("type")) == ("VTKFile", "Collection")
     sets = listed.findall("./Collection/DataSet")
@@ -77,7 +79,8 @@ def test_the_list_names_every_file_at_its_time(viewed):
 
 
 def test_one_frame_is_the_moment_of_the_peak_and_shows_it(viewed):
-    study, found = viewed
+    study, made = viewed
+    found = made.document
     run = Trajectory.load(study.store.path(study.highfi("phi15")))
     frame = found["frames"][found["peak"]["frame"]]
     assert frame["time_s"] == pytest.approx(run.stress["peak_stress_time_s"])
@@ -172,7 +175,8 @@ def test_scales_end_at_round_numbers(value, end):
 
 
 def test_command_writes_and_prints(viewed, monkeypatch):
-    study, found = viewed
+    study, made = viewed
+    found = made.document
     monkeypatch.setattr(view, "pyvista_version", lambda: None)
     arguments = [
         "view",
@@ -198,17 +202,18 @@ def known(**parts):
 
 
 def test_page_says_what_would_show_more(viewed):
-    study, found = viewed
+    study, made = viewed
+    found = made.document
     page = Page(
         study.scene,
         study.folder,
-        {"highfi": {"key": "k", "conditions": [asdict(known())], "failed": []}},
+        Documents(highfi={"key": "k", "conditions": [asdict(known())], "failed": []}),
         Runs({}, {}, {}),
         {},
     )
     shown = html(section.draw(page))
     assert "tipoff view --scene tiny --out" in shown and "notice" not in shown
-    page.documents["view"] = view.stored(study)
+    page.results["view"] = view.stored(study)
     shown = html(section.draw(page))
     assert (
         "tipoff view" not in shown
@@ -233,7 +238,8 @@ def test_pictures_are_drawn_and_embedded(viewed, monkeypatch):
     from PIL import Image
 
     monkeypatch.setattr(view, "pyvista_version", lambda: "there")
-    study, found = viewed
+    study, made = viewed
+    found = made.document
     folder = study.path(found["folder"])
     result = view.read(found)
     short = replace(result, frames=result.frames[:4], peak=replace(result.peak, frame=3))

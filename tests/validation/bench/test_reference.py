@@ -25,11 +25,12 @@ from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.outcome import Outcome
 from tipoff.scenes import load
 from tipoff.studies import registry
+from tipoff.studies.render import document
 from tipoff.studies.report.assembly import render
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
 from validation import STUDIES
-from validation.bench import done, reference, surrogate
+from validation.bench import done, parts, reference, surrogate
 from validation.bench.command import bench
 from validation.bench.csr_loop import CsrLoop
 from validation.bench.done import NotDone
@@ -100,10 +101,9 @@ def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, figures, few, erro
     (split,) = json.loads((tmp_path / "bench" / "parts.json").read_text())["rows"]
     assert split["elements"] == row["elements"] and "Parts of one step" in said.stdout
     assert min(split[f"{name}_us"] for name in ("elements", "contact", "bodies", "samples")) > 0.0
-    named = sum(
-        split[f"{name}_us"] for name in ("elements", "nodes", "joints", "contact", "bodies")
-    )
-    assert named == pytest.approx(split["step_us"])
+    parts = ("elements", "nodes", "joints", "contact", "bodies")
+    apart = sum(split[f"{name}_error_us"] for name in (*parts, "step"))
+    assert sum(split[f"{name}_us"] for name in parts) == pytest.approx(split["step_us"], rel=1e-9, abs=apart)
     monkeypatch.setattr(registry, "ADDED", [*STUDIES])
     page = render(
         Page(load("tiny"), tmp_path, {"bench": reference.stored(tmp_path)}, Runs({}, {}, {}), {})
@@ -218,3 +218,15 @@ def test_runs_of_a_method_have_the_modes_of_its_population():
     assert steps.tolist() == same.steps.values.tolist() != other.steps.values.tolist()
     for run in method.whole(tolerance, modes="auto")():
         assert "modes_why" in run.numerics
+
+
+@pytest.mark.parametrize("value, shown", [(4.4, "4.4 ± 0.5"), (-105.3, "at most 1")])
+def test_a_part_below_its_error_is_not_resolved(value, shown):
+    """It was shown as a negative time."""
+    names = ("step", "elements", "nodes", "joints", "contact", "bodies", "samples")
+    row = {"element_size_m": 1e-3, "elements": 8, "steps_timed": 100}
+    row |= {f"{name}_us": value for name in names} | {
+        f"{name}_error_us": 0.5 if value > 0.0 else 30.0 for name in names
+    }
+    text = document.terminal([parts.table({"rows": [row], "repeats": 5})])
+    assert text.count(shown) == len(names)

@@ -137,7 +137,7 @@ def watch(monkeypatch):
 
 def read(stage, study, options):
     """The result of a stage."""
-    return stage.STAGE.read(stage.run(study, options))
+    return stage.run(study, options).result
 
 
 def test_one_pilot_serves_all_readings_of_a_population(study, watch):
@@ -240,7 +240,7 @@ def test_the_search_is_repeated_until_its_own_result_needs_no_more_modes(study, 
     """Pilots within four results choose 2, 5, 4: the number does not fall back, or the search might
     not end."""
     runs = watch(2, 5, 4)
-    found = limits.STAGE.read(limits.run(study, Limits(("8 deg/s",), probability=0.9, cases=120)))
+    found = limits.run(study, Limits(("8 deg/s",), probability=0.9, cases=120)).result
     assert runs.pilots == 3 * pilot.PILOT and found.modes == 5
     assert found.modes_why.startswith("5: ") and list(dict.fromkeys(runs.modes)) == [0, 2, 5]
 

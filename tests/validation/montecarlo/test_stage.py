@@ -39,7 +39,7 @@ def kept(study):
 
 @pytest.fixture(scope="module")
 def found(kept):
-    return montecarlo.STAGE.read(kept)
+    return kept.result
 
 
 def test_what_is_written_is_whole_and_not_made_again(study, kept, found, monkeypatch):
@@ -54,7 +54,7 @@ def test_what_is_written_is_whole_and_not_made_again(study, kept, found, monkeyp
     tables = [
         f"montecarlo_{name}.csv" for name in ("quantities", "tails", "convergence", "readings")
     ]
-    assert set(kept["files"]) == {*figures, *tables}
+    assert set(kept.document["files"]) == {*figures, *tables}
     # no springs and no clearance without contact
     assert found.models is None and len(found.readings) == 7
     assert found.models_missing in terminal(pictures.summary(found))
@@ -62,7 +62,7 @@ def test_what_is_written_is_whole_and_not_made_again(study, kept, found, monkeyp
         "tipoff.studies.populations.population.run", lambda *_: pytest.fail("made again")
     )
     assert montecarlo.run(study, OPTIONS) == kept == montecarlo.STAGE.stored(study)
-    assert json.loads(study.path("montecarlo.json").read_text()) == kept
+    assert json.loads(study.path("montecarlo.json").read_text()) == kept.document
 
 
 def test_the_first_thousand_are_the_paper_s_and_bounds_shrink_with_the_root_of_the_number(found):
@@ -137,7 +137,7 @@ def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(
         return run(*arguments)
 
     monkeypatch.setattr(population, "run", spoilt)
-    found = montecarlo.STAGE.read(montecarlo.run(study, Options(cases=120, limits=("8 deg/s",))))
+    found = montecarlo.run(study, Options(cases=120, limits=("8 deg/s",))).result
     row = found.readings[2]
     assert (
         row.settled == 1

@@ -43,7 +43,7 @@ def kept(study):
 
 @pytest.fixture(scope="module")
 def found(kept):
-    return tails.STAGE.read(kept)
+    return kept.result
 
 
 def test_both_models_run_the_same_case(study, found):
@@ -86,7 +86,7 @@ def test_an_interrupted_study_makes_no_run_twice(study, kept, found, monkeypatch
     assert tails.run(study, OPTIONS) == kept == tails.STAGE.stored(study)
     study.path("tails.json").unlink()
     monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawn above
-    again = tails.STAGE.read(tails.run(study, OPTIONS))
+    again = tails.run(study, OPTIONS).result
     assert replace(again, cost=found.cost) == found
     more = replace(OPTIONS, draws=DRAWS + 1)
     with pytest.raises(pytest.fail.Exception, match="made again"):
@@ -95,7 +95,7 @@ def test_an_interrupted_study_makes_no_run_twice(study, kept, found, monkeypatch
 
 def test_what_is_printed(kept, found):
     tables = {f"tails_{name}.csv" for name in ("errors", "contacts", "statistics", "tails", "lost")}
-    assert set(kept["files"]) == {"figures/tails.png", "figures/tails.svg", *tables}
+    assert set(kept.document["files"]) == {"figures/tails.png", "figures/tails.svg", *tables}
     assert found.fine == 4 and found.element_size_m == 2.0 * found.fine_element_size_m
     # without contact no pad touches, and no springs stand beside
     assert "in 100 % of 10 draws" in terminal(tails_page.summary(found))

@@ -54,7 +54,7 @@ def studied(folder: Path, run, options: paper.Options) -> dict:
     with pytest.MonkeyPatch.context() as patch:
         undrawn(patch)
         patch.setattr(solutions, "run", run)
-        return paper.run(Study(BASE, folder, Settings(workers=1)), options)
+        return paper.run(Study(BASE, folder, Settings(workers=1)), options).document
 
 
 def copied(made: tuple[Path, dict], folder: Path) -> tuple[Study, dict]:

@@ -189,7 +189,7 @@ def test_data_that_are_gone_or_damaged_are_made_again_without_a_search(quick, mo
     before, again = _opened(study), dataclasses.replace(SMALL, starts=2)
     with monkeypatch.context() as patched:
         patched.setattr(results, "save", lambda *_: pytest.fail("written again"))
-        assert paper.run(study, again) == found
+        assert paper.run(study, again).document == found
     harm(study.path("paper.nc"))
     paper.run(study, again)
     assert _opened(study).identical(before)

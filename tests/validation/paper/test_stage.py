@@ -28,11 +28,12 @@ from validation.paper import stage as paper
 
 def test_stage_keeps_searches_and_is_skipped(tmp_path, monkeypatch, figures):
     study = Study(BASE, tmp_path, Settings(workers=1))
-    found = paper.run(study, SMALL)
+    made = paper.run(study, SMALL)
+    found = made.document
     assert (
         len(found["searches"]) == 2
         and len(found["inputs"]) == COUNT
-        and paper.stored(study) == found
+        and paper.stored(study) == made
     )
     assert (tmp_path / "figures" / "paper.svg").is_file() and scenes.load(
         tmp_path / "paper_like.toml"
@@ -40,10 +41,10 @@ def test_stage_keeps_searches_and_is_skipped(tmp_path, monkeypatch, figures):
     assert "Table 2, printed and found" in page(found)
     assert "36 h" in shown(found)
     monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched again"))
-    assert paper.run(study, SMALL) == found
+    assert paper.run(study, SMALL) == made
     (tmp_path / "paper.json").unlink()
     undrawn(monkeypatch)
-    assert paper.run(study, SMALL)["searches"] == found["searches"]
+    assert paper.run(study, SMALL).document["searches"] == found["searches"]
 
 
 def test_scene_that_cannot_be_searched_lists_every_fault(tmp_path):
@@ -183,15 +184,15 @@ def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
     study, _ = quick
     speed = replace(SPEEDUP, highfi_wall_s=60.0, lowfi_wall_s=2e-3, ratio=30000.0)
     write_json(study.path("agreement.json"), {"key": "of other code"} | document(speedup=speed))
-    stale = paper.stored(study)
+    stale = paper.stored(study).document
     for text in (page(stale), shown(stale)):
         assert "tipoff compare --scene clamped" in text and "30,000" not in text
     monkeypatch.setattr(compare, "stored", lambda _: table(speedup=speed))
-    fresh = paper.stored(study)
+    fresh = paper.stored(study).document
     for text in (page(fresh), shown(fresh)):
         assert "tipoff compare" not in text and "30,000" in text
     monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched again"))
-    assert paper.run(study, SMALL) == fresh
+    assert paper.run(study, SMALL).document == fresh
 
 
 @pytest.fixture
@@ -286,6 +287,6 @@ def test_page_says_whether_the_best_set_is_the_catalogue_s(quick, monkeypatch):
     for text in (page(found), shown(found)):
         assert "is not the scene paper_like" in text
     monkeypatch.setattr(paper, "CATALOGUED", study.path("paper_like.toml"))
-    same = paper.stored(study)
+    same = paper.stored(study).document
     for text in (page(same), shown(same)):
         assert "is the scene paper_like" in text

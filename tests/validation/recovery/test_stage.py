@@ -30,7 +30,7 @@ def test_hidden_values_are_found_and_shown_in_one_draw(tmp_path, monkeypatch):
 
 def require_hidden_values(tmp_path, draws: int, least: int) -> None:
     study = Study(tiny(), tmp_path / "tiny", defaults("tiny"))
-    found = stage.run(study, stage.Options(draws=draws))
+    found = stage.run(study, stage.Options(draws=draws)).document
     assert [row["parameter"] for row in found["rows"]][:2] == list(stage.HIDDEN)
     for row in found["rows"]:
         assert row["covered_with_model_error"] == draws >= row["covered"] >= 0
@@ -45,7 +45,7 @@ def require_hidden_values(tmp_path, draws: int, least: int) -> None:
     text = document.terminal(page.draw(found))
     assert "contact.clearance" in text and "elements of 8 mm" in text
     assert "which is held out" in text
-    assert stage.STAGE.stored(study)["rows"] == found["rows"]
+    assert stage.STAGE.stored(study).document["rows"] == found["rows"]
 
 
 def test_a_value_that_is_not_determined_is_not_covered():

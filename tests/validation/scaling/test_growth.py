@@ -244,8 +244,9 @@ def test_prices_of_effects():
 def test_cost_grows_with_elements_and_hardly_with_pads(tmp_path):
     """Elements are the work of the reference on any mesh; pads only where they touch."""
     study = Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
-    found = stage.run(study)
-    assert "4/3" in html(page.draw(stage.STAGE.read(found)))
+    made = stage.run(study)
+    found = made.document
+    assert "4/3" in html(page.draw(made.result))
     assert [point["n"] for point in found["elements"]["points"]] == sorted(
         point["n"] for point in found["elements"]["points"]
     )

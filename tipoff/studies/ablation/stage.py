@@ -25,7 +25,7 @@ from tipoff.studies.render.column import Column
 from tipoff.workspace import machine
 from tipoff.workspace.compiling import compile_ahead, warm_up
 from tipoff.workspace.run import Run
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 from tipoff.workspace.timing import timed
 
@@ -90,8 +90,8 @@ def _without(scene: Scene, effect: str, changes: dict) -> dict[str, dict]:
     return {line: changes}
 
 
-def run(study: Study) -> dict:
-    """The content of ``Ablation`` on the first refined condition, or else on the first condition."""
+def run(study: Study) -> Made[Ablation]:
+    """Rates and times without each effect, on the first refined condition, or else on the first condition."""
     name = (study.scene.agreement.refined or tuple(study.conditions))[0]
 
     def make() -> tuple[Ablation, list[Path]]:

@@ -34,7 +34,7 @@ _MARKERS = "Do"
 
 def draw(page: "Page") -> list[Part]:
     """The section; empty if no pad touches a rail."""
-    found = page.read(stage.STAGE)
+    found = page.result(stage.STAGE)
     if found is None or not found.growth:
         return []
     return [Figure(picture(found.growth), _SEPARATION), *tables(found.growth)]

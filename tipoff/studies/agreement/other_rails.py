@@ -74,7 +74,7 @@ def beside(folder: Path) -> list[Scene]:
 
 def draw(page: "Page") -> list[Part]:
     """The section; empty if no other scene has results."""
-    found = page.documents.get("rails")
+    found = page.results.get("rails")
     return parts(found) if found else []
 
 

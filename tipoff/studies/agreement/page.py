@@ -64,7 +64,7 @@ _COLUMNS: tuple[Any, ...] = (
 
 def draw(page: "Page") -> list[Part]:
     """The section, or how to make its result."""
-    return page.shown("agreement", lambda found: agreement(stage.STAGE.read(found)), "compare")
+    return page.shown(stage.STAGE, agreement, "compare")
 
 
 def agreement(found: Agreement) -> list[Part]:

@@ -18,9 +18,7 @@ if TYPE_CHECKING:
 def draw(page: "Page") -> list[Part]:
     """The section, or how to make its result."""
     equal = page.equal_accuracy
-    return page.shown(
-        "agreement", lambda found: speedups(stage.STAGE.read(found), equal), "compare"
-    )
+    return page.shown(stage.STAGE, lambda found: speedups(found, equal), "compare")
 
 
 def speedups(found: stage.Agreement, equal: EqualAccuracy | None = None) -> list[Part]:

@@ -17,7 +17,7 @@ from tipoff.studies.agreement.options import Options
 from tipoff.studies.agreement.verdicts import Row
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace.progress import Board
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 from tipoff.workspace.timing import Speedup, speedups
 
@@ -79,8 +79,8 @@ class Agreement:
         return self.fitted + self.held_out
 
 
-def run(study: Study, options: Options | None = None) -> dict:
-    """The content of ``Agreement``; default ``options``: those of the settings."""
+def run(study: Study, options: Options | None = None) -> Made[Agreement]:
+    """Judge the surrogates; default ``options``: those of the settings."""
     study.fitted()
     draws = (options and options.neighbours) or study.settings.neighbours
     _, calibrated, static, modal = compared = candidates(study)
@@ -118,13 +118,13 @@ def run(study: Study, options: Options | None = None) -> dict:
     return STAGE.run(study, Options(draws), make)
 
 
-def current(study: Study) -> dict:
+def current(study: Study) -> Made[Agreement]:
     """The result for the page: the stored one of ``tipoff compare``, with its number of neighbours,
     if scene, code and settings are the present ones; otherwise a new one with few neighbours, whose
     runs take most of the time of a first report."""
     found = STAGE.stored(study)
     few = Options(min(NEIGHBOURS_OF_A_REPORT, study.settings.neighbours))
-    return run(study, few if found is None else STAGE.asked(found))
+    return run(study, few if found is None else STAGE.asked(found.document))
 
 
 def _elements(compliant: Candidate) -> dict | None:
@@ -144,7 +144,7 @@ STAGE = Stage("agreement", __name__, options=Options, inputs=_inputs, result=Agr
 def stored(study: Study) -> Agreement | None:
     """The stored result if it was made from the present scene, code and settings."""
     found = STAGE.stored(study)
-    return None if found is None else STAGE.read(found)
+    return None if found is None else found.result
 
 
 def _simpler(study: Study, compliant: Candidate, highfi: dict[str, Trajectory]) -> list[Simpler]:

@@ -26,14 +26,13 @@ def _answer(request: Request, asked: Options) -> Output:
         from tipoff.studies.blind import page as drawn
         from tipoff.studies.blind import stage as blind
 
-        found = blind.run(request.study(), asked)
-        return Output(found, lambda found: drawn.terminal(blind.STAGE.read(found)), request.out)
+        return Output.of(blind.run(request.study(), asked), drawn.terminal, request.out)
     from tipoff.studies.agreement import page, stage
     from tipoff.studies.agreement.options import Options as OfScene
 
     _require(asked)
     found = stage.run(request.study(), OfScene(asked.neighbours))
-    return Output(found, lambda found: page.terminal(stage.STAGE.read(found)), request.out)
+    return Output.of(found, page.terminal, request.out)
 
 
 def _require(asked: Options) -> None:
@@ -55,8 +54,7 @@ def _load() -> Contents:
     from tipoff.studies.blind.options import CASES
 
     def draw(shown: "Page") -> "list[Part]":
-        command = f"compare --blind {CASES}"
-        return shown.shown(stage.NAME, lambda found: page.draw(stage.STAGE.read(found)), command)
+        return shown.shown(stage.STAGE, page.draw, f"compare --blind {CASES}")
 
     return Contents(
         (Result(stage.NAME, stage.run, stage.STAGE.stored),),

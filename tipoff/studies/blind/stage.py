@@ -20,7 +20,7 @@ from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.agreement.verdicts import Gates, Row
 from tipoff.studies.blind.options import CASES, Options
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 
 NAME = "blind"
@@ -46,8 +46,8 @@ class Blind:
     distributions: tuple[Distribution, ...]
 
 
-def run(study: Study, options: Options = Options()) -> dict:
-    """The content of ``Blind``."""
+def run(study: Study, options: Options = Options()) -> Made[Blind]:
+    """The verdicts on drawn conditions."""
     drawn = with_drawn_conditions(study, options)
     compared = [calibrated(study), compliant(drawn, drawn.conditions)]
 

@@ -104,6 +104,8 @@ def calibrate(
     elif chosen is not None:
         found = stage.on_reference(study, model or default, chosen)
     else:
-        found = stage.of_models(study, model)
-        return Output(found, lambda found: page.of_models(found, study.folder))
-    return Output(found, lambda found: page.terminal(stage.STAGE.read(found), study.folder))
+        both = stage.of_models(study, model)
+        documents = {name: made.document for name, made in both.items()}
+        parts = page.of_models({name: made.result for name, made in both.items()}, study.folder)
+        return Output({"scene": study.scene.name, **documents}, lambda _: parts)
+    return Output.of(found, lambda found: page.terminal(found, study.folder))

@@ -13,7 +13,7 @@ import numpy as np
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 
 _SAME = 1e-9  # m
@@ -45,8 +45,8 @@ class Compliance:
     under_a_pad: UnderPad | None = None
 
 
-def run(study: Study) -> dict:
-    """The content of ``Compliance``."""
+def run(study: Study) -> Made[Compliance]:
+    """The rail compliance under the pads."""
 
     def make() -> tuple[Compliance, list[Path]]:
         began = time.perf_counter()

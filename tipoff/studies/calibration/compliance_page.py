@@ -28,8 +28,8 @@ _LOOKS = ((5.0, "-", 0.35), (1.5, "-", 1.0), (1.5, ":", 1.0))  # width, dash, op
 
 def draw(page: "Page") -> list[Part]:
     """The curves and their extremes; empty for a scene without contact."""
-    found = page.read(compliance.STAGE)
-    if found is None or (under := found.under_a_pad) is None:
+    found = page.result(compliance.STAGE)
+    if found is None or (under := found.under_a_pad) is None or found.element_size_m is None:
         return []
     caption = _CAPTION.format(size=1e3 * found.element_size_m)
     if found.elements:

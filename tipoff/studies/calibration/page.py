@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tipoff.studies.calibration import compliance
 from tipoff.studies.calibration.compliance import Compliance
 from tipoff.studies.calibration.stage import STAGE, Fit
 from tipoff.studies.render.document import Fold, Part
@@ -23,16 +22,16 @@ _INTERVALS = (
 
 def draw(page: "Page") -> list[Part]:
     """The calibration, or the command that makes it."""
-    return page.shown("calibration", lambda found: calibration(STAGE.read(found)), "calibrate")
+    return page.shown(STAGE, calibration, "calibrate")
 
 
 def of_models(found: dict, folder: Path) -> list[Part]:
     """The results of both models, or of one, for the terminal, with the files in ``folder``."""
     parts: list[Part] = []
     if "compliance" in found:
-        parts += _compliance(compliance.STAGE.read(found["compliance"]), folder)
+        parts += _compliance(found["compliance"], folder)
     if "springs" in found:
-        parts += terminal(STAGE.read(found["springs"]), folder)
+        parts += terminal(found["springs"], folder)
     return parts
 
 

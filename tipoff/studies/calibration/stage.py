@@ -23,7 +23,7 @@ from tipoff.scenes.names import NOMINAL
 from tipoff.studies.calibration import compliance, forecast
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError, picked, require_success
 
 FILE = "calibration.toml"
@@ -59,8 +59,8 @@ class Fit:
     calibration: str
 
 
-def run(study: Study) -> dict:
-    """The content of ``Fit``, of springs; writes ``calibration.toml``."""
+def run(study: Study) -> Made[Fit]:
+    """The fit of springs; writes ``calibration.toml``."""
     names = study.fitted()
     requested = _requested(study)
 
@@ -78,19 +78,16 @@ def run(study: Study) -> dict:
     return STAGE.run(study, None, make)
 
 
-def of_models(study: Study, model: str | None = None) -> dict:
-    """Calibrate one ``model`` of the surrogate, None for both; ``compliance`` and ``springs`` as in
-    their result files."""
-    found: dict[str, Any] = {"scene": study.scene.name}
+def of_models(study: Study, model: str | None = None) -> dict[str, Made]:
+    """Calibrate one ``model`` of the surrogate, None for both: ``compliance`` and ``springs``."""
     if model != COMPLIANT:
         study.fitted()  # raises before the compliance is computed
-    if model != SPRINGS:
-        found["compliance"] = compliance.run(study)
-    return found | ({"springs": run(study)} if model != COMPLIANT else {})
+    found: dict[str, Made] = {} if model == SPRINGS else {"compliance": compliance.run(study)}
+    return found if model == COMPLIANT else {**found, "springs": run(study)}
 
 
-def on_reference(study: Study, model: str, parameters: Sequence[str]) -> dict:
-    """The content of ``Fit`` of the ``model`` compliant, with these ``parameters``, on the reference's
+def on_reference(study: Study, model: str, parameters: Sequence[str]) -> Made[Fit]:
+    """The fit of the ``model`` compliant, with these ``parameters``, on the reference's
     fitted conditions; writes ``calibration-compliant.toml``. Raises CalibrationError."""
     from tipoff import calibration
 
@@ -125,8 +122,8 @@ def _other(
     parameters: Sequence[str] | None,
     study: Study,
     make: Callable[[], tuple[Fit, list[Path]]],
-) -> dict:
-    """The content of a ``Fit`` with a file of another ``name``, from ``sources`` (JSON values)."""
+) -> Made[Fit]:
+    """A fit with a file of another ``name``, from ``sources`` (JSON values)."""
     inputs = [sources, parameters and list(parameters)]
     return replace(STAGE, name=name, inputs=lambda *_: inputs).run(study, None, make)
 
@@ -189,8 +186,8 @@ def from_files(
     model: str = SPRINGS,
     parameters: Sequence[str] | None = None,
     layouts: Mapping[str, Layout] = MappingProxyType({}),
-) -> dict:
-    """The content of ``Fit`` of a ``model``, of these ``parameters`` or the default ones, from files
+) -> Made[Fit]:
+    """The fit of a ``model``, of these ``parameters`` or the default ones, from files
     (condition, path) that ``Curves.read`` reads in their ``layouts``; writes
     ``curves/calibration.toml``, on compliant contact ``curves/calibration-compliant.toml``.
 

@@ -12,6 +12,7 @@ import typer
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
+    from tipoff.workspace.stage import Made
 
 
 _T = TypeVar("_T")
@@ -24,6 +25,16 @@ class Output(NamedTuple):
     result: dict
     shown: "Callable[[dict], Sequence[Part]] | None" = None
     out: Path | None = None
+
+    @classmethod
+    def of(
+        cls,
+        made: "Made[_T]",
+        shown: "Callable[[_T], Sequence[Part]]",
+        out: Path | None = None,
+    ) -> "Output":
+        """The output of a stage, whose typed result ``shown`` gets."""
+        return cls(made.document, lambda _: shown(made.result), out)
 
 
 def study_of(

@@ -12,7 +12,7 @@ def _answer(request: Request, options: Options) -> Output:
     from tipoff.studies.convergence import page, stage
 
     found = stage.run(request.study(), options)
-    return Output(found, lambda found: page.terminal(stage.STAGE.read(found)), request.out)
+    return Output.of(found, page.terminal, request.out)
 
 
 def _load() -> Contents:

@@ -38,7 +38,7 @@ _RIPPLE = (
 
 def draw(page: "Page") -> list[Part]:
     """The section; empty without a result, because a result takes minutes."""
-    found = page.read(stage.STAGE)
+    found = page.result(stage.STAGE)
     if found is None:
         return []
     chart = picture(found)

@@ -28,7 +28,7 @@ from tipoff.studies.convergence.ripple import CELLS, Ripple
 from tipoff.studies.render.column import Column
 from tipoff.workspace.progress import Board
 from tipoff.workspace.run import Run
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, require_success
 from tipoff.workspace.timing import speedups
 
@@ -122,8 +122,8 @@ class Convergence:
         ]
 
 
-def run(study: Study, options: Options | None = None) -> dict:
-    """The content of ``Convergence``. Raises SceneError for an unknown condition, StudyError if a
+def run(study: Study, options: Options | None = None) -> Made[Convergence]:
+    """The error of the reference. Raises SceneError for an unknown condition, StudyError if a
     mesh or a step fails."""
     given = options and options.condition
     name = given or (study.scene.agreement.refined or tuple(study.conditions))[0]

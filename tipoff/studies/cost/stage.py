@@ -32,7 +32,7 @@ from tipoff.workspace import machine
 from tipoff.workspace.compiling import warm_up
 from tipoff.workspace.progress import Board
 from tipoff.workspace.run import Run, execute, with_modes_of
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 from tipoff.workspace.timing import timed
 from tipoff.workspace.words import counted
@@ -43,8 +43,8 @@ STIFFNESS_ALONG = f"{COMPLIANT}, mean pressure of each face by itself"
 NAME, POINTS = "cost_study", "cost.json"
 
 
-def run(study: Study) -> dict:
-    """The content of ``Cost``."""
+def run(study: Study) -> Made[Cost]:
+    """Errors and wall times."""
     name = condition(study)
     compared = surrogates(study)
 

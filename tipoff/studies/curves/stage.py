@@ -21,7 +21,7 @@ from tipoff.studies.curves.results import Channel, Compared, Drawn, Row
 from tipoff.studies.render.document import with_figures
 from tipoff.workspace import models as known
 from tipoff.workspace.run import Run
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, require_success
 
 NAME = "curves"
@@ -36,8 +36,8 @@ _DIFFERENCES = (  # fields of Row that are fields of a Difference
 )
 
 
-def run(study: Study, options: Options = Options()) -> dict:
-    """The content of ``Compared``. Raises SceneError listing every fault of every file."""
+def run(study: Study, options: Options = Options()) -> Made[Compared]:
+    """The differences from the files. Raises SceneError listing every fault of every file."""
     curves, _ = together(lambda: _of_files(options), lambda: _require(study, options))
     requests = _requests(study, options)
 

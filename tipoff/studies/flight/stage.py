@@ -18,15 +18,15 @@ from tipoff.studies.flight.results import Condition, Curves, Flight
 from tipoff.studies.populations import population
 from tipoff.studies.populations.population import Population
 from tipoff.workspace.progress import Board
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
 
 NAME = "flight"
 
 
-def run(study: Study, options: Options = Options()) -> dict:
-    """The content of ``Flight``. Raises SceneError for a scene without ``[flight]``."""
+def run(study: Study, options: Options = Options()) -> Made[Flight]:
+    """The flight after the exit. Raises SceneError for a scene without ``[flight]``."""
     _require(study)
     changed = {
         name: value

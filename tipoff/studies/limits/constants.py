@@ -88,7 +88,7 @@ def margin(study: Study, model: str) -> Margin:
             f"{len(rows) - len(judged)}; not settled: {len(judged) - len(errors)}",
         )
     stored = calibrate.stored(study)
-    left = _residuals(calibrate.STAGE.read(stored) if stored else None)
+    left = _residuals(stored.result if stored else None)
     if model == COMPLIANT or not left:
         if not rows:
             return Margin(None, "not measured (tipoff compare measures it)")

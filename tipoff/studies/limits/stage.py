@@ -33,7 +33,7 @@ from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
 from tipoff.workspace.options import require
 from tipoff.workspace.progress import Board
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 
 NAME = "limits"
@@ -44,8 +44,8 @@ RAYS = 5  # rays between the axes of the map of two tolerances
 _REACH = 5.0  # largest multiple of a whole set
 
 
-def run(study: Study, options: Options = Options()) -> dict:
-    """The content of ``Limits``. Raises SceneError listing every fault of the input, and StudyError
+def run(study: Study, options: Options = Options()) -> Made[Limits]:
+    """The certified tolerances. Raises SceneError listing every fault of the input, and StudyError
     if the payload does not leave the rail even without errors."""
     (limits, cases), _ = together(
         lambda: checked(options), lambda: options.condition and study.condition(options.condition)

@@ -14,7 +14,7 @@ def mesh(request: Request) -> Output:
     """
     from tipoff.studies.mesh import page, stage
 
-    return Output(stage.run(request.study()), page.terminal, request.out)
+    return Output.of(stage.run(request.study()), page.terminal, request.out)
 
 
 def _load() -> Contents:

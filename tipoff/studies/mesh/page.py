@@ -14,8 +14,7 @@ if TYPE_CHECKING:
 def draw(page: "Page") -> list[Part]:
     """The figures of the mesh, and its surfaces."""
 
-    def body(content: dict) -> list[Part]:
-        found: Mesh = STAGE.read(content)
+    def body(found: Mesh) -> list[Part]:
         return [
             Caption(
                 f"{found.elements:,} {found.kind}, {found.nodes:,} nodes, elements of about "
@@ -24,17 +23,16 @@ def draw(page: "Page") -> list[Part]:
                 f"{found.smallest_scaled_jacobian:.3f} (1 for a brick and for a regular "
                 f"tetrahedron). ParaView shows {found.mesh}."
             ),
-            *terminal(content),
+            *terminal(found),
             *map(Notice, found.warnings),
         ]
 
-    return page.shown("mesh", body, "mesh")
+    return page.shown(STAGE, body, "mesh")
 
 
-def terminal(content: dict) -> list[Part]:
+def terminal(found: Mesh) -> list[Part]:
     """The named surfaces: their facets, their area, and for a solid the area of its own faces; then the
     extent of the rails."""
-    found: Mesh = STAGE.read(content)
     surfaces = found.surfaces
     columns: list[tuple[Column | str, Callable]] = [
         ("surface", lambda item: item[0].replace("_", " ")),

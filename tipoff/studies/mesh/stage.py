@@ -8,7 +8,7 @@ import numpy as np
 from tipoff.files import replacing
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 
 
@@ -59,8 +59,8 @@ def _request(study: Study) -> Run:
 STAGE = Stage("mesh", __name__, inputs=lambda study, _: _request(study).key, result=Mesh)
 
 
-def run(study: Study) -> dict:
-    """The content of ``Mesh``; writes ``mesh.vtu`` and ``rail.inp``."""
+def run(study: Study) -> Made[Mesh]:
+    """The mesh; writes ``mesh.vtu`` and ``rail.inp``."""
     request = _request(study)
 
     def make() -> tuple[Mesh, list[Path]]:

@@ -14,7 +14,7 @@ from tipoff.studies.nominal.spread import Spread
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.results import Row
 from tipoff.workspace.run import Run
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 
 NAME = "nominal"
@@ -44,8 +44,8 @@ class Nominal:
     failed: tuple[str, ...]
 
 
-def run(study: Study) -> dict:
-    """The content of ``Nominal``. Raises SceneError for invalid distributions of the errors."""
+def run(study: Study) -> Made[Nominal]:
+    """The answer of the scene itself with its range. Raises SceneError for invalid distributions of the errors."""
     scene = study.condition(NOMINAL)
     uncertainty.of_scene(scene)
 

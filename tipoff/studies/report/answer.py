@@ -68,12 +68,12 @@ _HAND_NOTE = (
 def draw(page: "Page") -> list[Part]:
     """The answer of the scene itself, key figures over all conditions, the basis of the answer, the
     launcher with its axes, and a row for each condition."""
-    nominal = page.documents.get("nominal")
-    first = nominal_page.draw(nominal_stage.STAGE.read(nominal)) if nominal else []
+    nominal = page.result(nominal_stage.STAGE)
+    first = nominal_page.draw(nominal) if nominal else []
     rows = page.rows()["highfi"]
     if not rows:
         return [*first, page.missing("highfi", "highfi"), drawing.launcher(page.scene)]
-    agreement = page.read(compare.STAGE)
+    agreement = page.result(compare.STAGE)
     compared = {row.condition: row for row in agreement.compliant} if agreement else {}
     spreads = _spreads(agreement)
     rates = [*_speed(page, rows), *_largest(rows, compared, spreads)]
@@ -129,14 +129,14 @@ def _speed(page: "Page", rows: Sequence[Row]) -> list[tuple[str, str]]:
     if not speeds:
         return []
     low, high = (uncertain(speed, least=STEPS["m/s"]) for speed in (min(speeds), max(speeds)))
-    studied = page.read(convergence.STAGE)
+    studied = page.result(convergence.STAGE)
     known = [
         row.nominal_uncertainty
         for row in (studied.quantities if studied else ())
         if row.quantity == "settled axial velocity" and row.nominal_uncertainty is not None
     ]
     shown = low if low == high else f"{low} to {high}"
-    if not known:
+    if studied is None or not known:
         return [(shown, "v_x (m/s), uncertainty not measured (tipoff convergence)")]
     error = rounded(max(known), max(known), STEPS["m/s"])
     return [(shown, f"v_x (m/s), each ± {error} by mesh and step, measured on {studied.condition}")]

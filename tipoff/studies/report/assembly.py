@@ -18,6 +18,7 @@ from tipoff.studies.report.promises import promises, table
 from tipoff.studies.report.template import Drawn, Group
 from tipoff.workspace import machine
 from tipoff.workspace.attempt import attempt
+from tipoff.workspace.stage import Made
 
 _VALIDATION = (
     "Promises are checked on the runs of this page. `docs/verification_and_validation.md` has the cases "
@@ -98,7 +99,7 @@ def _drawn(page: Page, item: Section, before: Sequence[Part] = ()) -> Drawn:
 
 
 def _promises(page: Page) -> list[Part]:
-    agreement, calibration = page.read(compare.STAGE), page.read(calibrate.STAGE)
+    agreement, calibration = page.result(compare.STAGE), page.result(calibrate.STAGE)
     return [table(promises(page.rows(), agreement, calibration)), Caption(_VALIDATION)]
 
 
@@ -132,9 +133,9 @@ def _colophon(page: Page) -> list[Part]:
         ("scene hash", f"`{page.scene.hash}`"),
     ]
     keys = [
-        (f"{stage}.json", f"`{found['key']}`")
-        for stage, found in page.documents.items()
-        if found and stage not in ("view", "rails")
+        (f"{name}.json", f"`{found.key}`")
+        for name, found in page.results.items()
+        if isinstance(found, Made)
     ]
     return [
         Table(("", ""), facts),

@@ -33,7 +33,7 @@ def report(
 
     First come velocity and rates of the scene itself, with their 95 % range under the random errors
     that the scene states (studies.errors). Makes mesh, highfi, lowfi, calibrate, compare, cost,
-    stability and ablation where they are out of date; a first page is written before compare, and
+    stability and ablation where they are out of date; the page is written again as they arrive, and
     a chaotic condition gets 8 neighbours (--every: all). The page shows every other study that has
     a result; --every makes them all.
     """

@@ -1,9 +1,9 @@
 """Data for the sections of the page: the results and their scene."""
 
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from markupsafe import Markup
 
@@ -19,13 +19,15 @@ from tipoff.studies.render.palette import themed
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.results import Row
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
+
+_Result = TypeVar("_Result")
 
 
 class Page:
     """One report: its results, and the tools for its sections.
 
-    ``documents`` are result files by stage (None where missing). ``problems`` are the reasons why a
+    ``results`` by name: ``Made`` of a stage, None where missing. ``problems`` are the reasons why a
     stage has no result. ``limits`` are the limits of rates from the user.
     """
 
@@ -33,33 +35,35 @@ class Page:
         self,
         scene: Scene,
         folder: Path,
-        documents: dict,
+        results: Mapping[str, Any],
         runs: Runs,
         problems: dict[str, str],
         limits: Sequence[Limit] = (),
     ):
-        self.scene, self.folder, self.documents = scene, folder, documents
+        self.scene, self.folder, self.results = scene, folder, results
         self.runs, self.problems = runs, problems
         self.limits = limits
         self.lacking: list[str] = []  # commands of results that are missing
         self.failures: dict[str, str] = {}  # reasons of sections that failed, by anchor
         self.pictures: list[Path] = []
 
-    def shown(self, result: str, body: Callable[[dict], Sequence[Part]], target: str) -> list[Part]:
-        """The parts that ``body`` makes of a ``result``; without the result, the command that makes
-        it."""
-        found = self.documents.get(result)
-        return list(body(found)) if found else [self.missing(result, target)]
+    def shown(
+        self, stage: Stage[_Result], body: Callable[[_Result], Sequence[Part]], target: str
+    ) -> list[Part]:
+        """The parts that ``body`` makes of the result of a ``stage``; without the result, the command
+        that makes it."""
+        found = self.result(stage)
+        return list(body(found)) if found else [self.missing(stage.name, target)]
 
-    def read(self, stage: Stage) -> Any:
+    def result(self, stage: Stage[_Result]) -> _Result | None:
         """The result of a stage; None where it is missing."""
-        found = self.documents.get(stage.name)
-        return stage.read(found) if found else None
+        found: Made[_Result] | None = self.results.get(stage.name)
+        return found.result if found else None
 
     @property
     def equal_accuracy(self) -> EqualAccuracy | None:
         """The speed-up at equal accuracy; None if the convergence study did not measure it."""
-        found = self.read(convergence.STAGE)
+        found = self.result(convergence.STAGE)
         return found.equal_accuracy if found else None
 
     def missing(self, stage: str, target: str) -> Notice | Missing:
@@ -89,6 +93,6 @@ class Page:
     def rows(self) -> dict[str, Sequence[Row]]:
         """Conditions of both models."""
         return {
-            name: found.conditions if (found := self.read(stage)) else ()
+            name: found.conditions if (found := self.result(stage)) else ()
             for name, stage in runs.STAGES.items()
         }

@@ -1,10 +1,11 @@
 """Stage ``report``: makes the stages that compare both models, then one page of their results and of
 all other stored results."""
 
+import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic_core import to_jsonable_python
 
@@ -19,7 +20,13 @@ from tipoff.studies.runs import stage as runs
 from tipoff.workspace.attempt import attempt
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
+from tipoff.workspace.stage import Made
 from tipoff.workspace.study import NotAsked, Study, StudyError
+
+if TYPE_CHECKING:
+    from tipoff.studies.nominal.stage import Nominal
+
+_EARLY = 10.0  # s since the page was written, after which it is written with what is there
 
 
 def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict:
@@ -28,33 +35,32 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     failures of all stages and sections.
 
     The page has all other results and sections if one fails, or if the scene does not allow one. The
-    comparison of both models is made if the scene asks for it. A first page, with the answer and the
-    runs, is written before it is made, and once more before the studies that follow it.
+    comparison of both models is made if the scene asks for it. While results are made, the page is
+    written with those that are there, the first time with the answer of the scene itself.
     Raises InputError, before a result is made, if the scene does not allow a required one. With
     ``every``, each study without a present result is made too; the page gives the reason if the
     scene does not allow a study. The page states whether the rates are within ``limits``.
     """
     asked = tuple(limit.asked for limit in limits)
-    documents: dict[str, dict | None] = {}
+    made: dict[str, Made | None] = {}
     problems: dict[str, str] = {}
-    listed, fresh = results(), False
+    listed = results()
+    waiting = [name for name, make_result, stored, _ in listed if make_result and stored is None]
+    written = time.monotonic()
     for name, make_result, stored, _ in listed:
         if make_result is None or stored is not None:
             continue
-        if name == compare.STAGE.name:
-            if every:
-                make_result = compare.run  # with as many neighbours as the settings have
-            fresh = _is_to_be_made(study)
-        if fresh:
-            waiting = [own for own, make, there, _ in listed if make and there is None]
-            _draw_early(study, documents, waiting[waiting.index(name) :], limits)
-        fresh = fresh and name == compare.STAGE.name
-        passing = NotAsked if any(documents.values()) else InputError
+        if name == compare.STAGE.name and every:
+            make_result = compare.run  # with as many neighbours as the settings have
+        if made and time.monotonic() - written > _EARLY:
+            _draw_early(study, made, waiting[waiting.index(name) :], limits)
+            written = time.monotonic()
+        passing = NotAsked if any(made.values()) else InputError
         try:
-            documents[name], reason = attempt(name, partial(make_result, study), passing)
+            made[name], reason = attempt(name, partial(make_result, study), passing)
             problems |= {name: reason} if reason else {}
         except NotAsked:
-            documents[name] = None
+            made[name] = None
             say(f"{name}: not made, since the scene has no [agreement] with fitted conditions")
     absent, failed = _made(study, listed, asked) if every else ({}, {})
     problems |= failed
@@ -63,10 +69,10 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
         if stored is not None:
             there[name], reason = attempt(f"the stored result of {name}", partial(stored, study))
             problems |= {name: reason} if reason else {}
-    runs_, reason = attempt("stored runs", lambda: _trajectories(study, documents))
+    runs_, reason = attempt("stored runs", lambda: _trajectories(study, made))
     problems |= {"stored runs": reason} if reason else {}
 
-    def make() -> tuple[dict, list[Path]]:
+    def drawn() -> tuple[dict, list[Path]]:
         from tipoff.studies.report.assembly import render
         from tipoff.studies.report.page import Page
         from tipoff.studies.runs.figures import Runs
@@ -74,7 +80,7 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
         page = Page(
             study.scene,
             study.folder,
-            documents | there,
+            made | there,
             runs_ or Runs({}, {}),
             problems | absent,
             limits,
@@ -83,39 +89,34 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
         write_text(path, render(page))
         found = {
             "report": study.relative(path),
-            "answer": _answer(documents.get("nominal")),
-            "verdict": _verdict(documents.get("agreement")),
-            "failed": _failed(documents, problems)
+            "answer": _answer(made.get("nominal")),
+            "verdict": _verdict(made.get("agreement")),
+            "failed": _failed(made, problems)
             + [f"section {name}: {reason}" for name, reason in page.failures.items()],
         }
         return found, [path, *page.pictures]
 
-    keys = {name: found and found["key"] for name, found in documents.items()}
-    made_at = {
-        name: study.path(f"{name}.json").read_text() for name, found in documents.items() if found
-    }
-    drawn = sources.digest("tipoff.studies.report.assembly")
-    shown = study.key(__name__, drawn, study.scene.resolved().get("flight"), asked)
+    keys = {name: found and found.key for name, found in made.items()}
+    files = {name: study.path(f"{name}.json").read_text() for name, found in made.items() if found}
+    program = sources.digest("tipoff.studies.report.assembly")
+    shown = study.key(__name__, program, study.scene.resolved().get("flight"), asked)
     key = content_hash(
         keys,
-        content_hash(made_at),
-        content_hash(to_jsonable_python(there)),
+        content_hash(files),
+        content_hash(
+            {
+                name: found.document if isinstance(found, Made) else to_jsonable_python(found)
+                for name, found in there.items()
+            }
+        ),
         problems | absent,
         shown,
     )
-    return study.stage("report", key, make)
-
-
-def _is_to_be_made(study: Study) -> bool:
-    """Whether the comparison of both models has no present result; False if the scene allows none."""
-    try:
-        return compare.STAGE.stored(study) is None
-    except (InputError, StudyError):
-        return False
+    return study.stage("report", key, drawn)
 
 
 def _draw_early(
-    study: Study, documents: dict, waiting: Sequence[str], limits: Sequence[Limit]
+    study: Study, made: dict[str, Made | None], waiting: Sequence[str], limits: Sequence[Limit]
 ) -> None:
     """Write the page with the results that are there; it names those that are still being made."""
     from tipoff.studies.report.assembly import render
@@ -124,31 +125,32 @@ def _draw_early(
 
     def write() -> None:
         again = "being made; this page is written again when they are there"
-        found, _ = attempt("stored runs", lambda: _trajectories(study, documents))
-        made = documents, found or Runs({}, {}), {", ".join(waiting): again}
-        write_text(path, render(Page(study.scene, study.folder, *made, limits)))
-        say(f"{path}: a first page, without {', '.join(waiting)}")
+        found, _ = attempt("stored runs", lambda: _trajectories(study, made))
+        problems = {", ".join(waiting): again}
+        page = Page(study.scene, study.folder, made, found or Runs({}, {}), problems, limits)
+        write_text(path, render(page))
+        say(f"{path}: a page without {', '.join(waiting)}")
 
     path = study.path("report.html")
     attempt("the first page", write)
 
 
-def _answer(nominal: dict | None) -> list[str]:
+def _answer(nominal: "Made[Nominal] | None") -> list[str]:
     """The answer of the scene itself with its range; empty if it could not be made."""
     if not nominal:
         return []
-    from tipoff.studies.nominal import page, stage
+    from tipoff.studies.nominal import page
 
-    return page.lines(stage.STAGE.read(nominal))
+    return page.lines(nominal.result)
 
 
-def _verdict(agreement: dict | None) -> str:
+def _verdict(agreement: Made[compare.Agreement] | None) -> str:
     """How many conditions agree, and the speed-up; empty if the models were not compared."""
     if not agreement:
         return ""
     from tipoff.studies.agreement import page
 
-    found = compare.STAGE.read(agreement)
+    found = agreement.result
     return (
         f"Compliant contact against finite elements: {page.summary(found.compliant)}; "
         f"{found.speedup_compliant.ratio:,.0f} times faster."
@@ -178,33 +180,33 @@ def _made(
 
 
 def _within(
-    make: Callable[[Study, tuple[str, ...]], dict], limits: tuple[str, ...], study: Study
-) -> dict:
+    make: Callable[[Study, tuple[str, ...]], Made], limits: tuple[str, ...], study: Study
+) -> Made:
     return make(study, limits)
 
 
 def _missing(
-    study: Study, make: Callable[[Study], dict], stored: Callable[[Study], Any]
-) -> dict | None:
+    study: Study, make: Callable[[Study], Made], stored: Callable[[Study], Any]
+) -> Made | None:
     """The new result of a stage; None if there is a stored one."""
     return make(study) if stored(study) is None else None
 
 
-def _failed(documents: dict, problems: dict[str, str]) -> list[str]:
+def _failed(made: dict[str, Made | None], problems: dict[str, str]) -> list[str]:
     inside = [
         f"{name}: {line}"
-        for name, found in documents.items()
+        for name, found in made.items()
         if found
-        for line in found.get("failed", [])
+        for line in found.document.get("failed", [])
     ]
     return inside + [f"{name}: {reason}" for name, reason in problems.items()]
 
 
-def _trajectories(study: Study, documents: dict):
+def _trajectories(study: Study, made: dict[str, Made | None]):
     from tipoff.studies.runs.figures import Runs
 
     requested = [runs.requests(study, fidelity) for fidelity in ("highfi", "lowfi")]
-    if documents.get("agreement"):
+    if made.get(compare.STAGE.name):
         plain, calibrated, *_ = compare.candidates(study)
         requested += [
             {name: candidate.request(study, name) for name in study.conditions}

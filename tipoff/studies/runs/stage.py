@@ -13,7 +13,7 @@ from tipoff.results.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
 from tipoff.studies.runs.results import AtExit, ByHand, Row, Runs, Settled, Vector
 from tipoff.workspace.run import Run
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import FAILED, Study
 
 
@@ -25,8 +25,8 @@ def requests(study: Study, fidelity: str) -> dict[str, Run]:
     return {name: study.lowfi(name, compliance=under[name]) for name in study.conditions}
 
 
-def run(study: Study, fidelity: str) -> dict:
-    """The content of ``Runs``."""
+def run(study: Study, fidelity: str) -> Made[Runs]:
+    """All conditions in a ``fidelity``."""
     requested = requests(study, fidelity)
 
     def make() -> tuple[Runs, list[Path]]:

@@ -21,7 +21,7 @@ def draw(page: "Page") -> list[Part]:
     rows = page.rows()["highfi"]
     if not rows:
         return [page.missing("highfi", "highfi")]
-    return shown(rows, page.documents.get("view") or [], page.folder, page.command("view"))
+    return shown(rows, page.results.get("view") or [], page.folder, page.command("view"))
 
 
 def shown(rows: Sequence[Row], views: "Sequence[View]", folder: Path, command: str) -> list[Part]:

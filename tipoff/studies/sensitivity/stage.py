@@ -27,15 +27,15 @@ from tipoff.studies.sensitivity.results import (
     Varied,
 )
 from tipoff.workspace.options import require
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError
 
 NAME = "sensitivity"
 _FINE = Numerics().relative_tolerance  # the tables show relative changes of a thousandth
 
 
-def run(study: Study, options: Options = Options()) -> dict:
-    """The content of ``Sensitivity``.
+def run(study: Study, options: Options = Options()) -> Made[Sensitivity]:
+    """What each input changes.
 
     Raises SceneError for bad input, before anything runs, and StudyError if the scene itself does
     not settle or too few cases do.

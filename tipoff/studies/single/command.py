@@ -126,12 +126,8 @@ def run(
         models.require(models.Options(model), checkpoint_every=checkpoint_every)
         fidelity = "highfi" if model == FINITE_ELEMENTS else "lowfi"
         every = request.study(checkpoint_every=checkpoint_every, resume=resume)
-        read = stage.STAGES[fidelity].read
-        return Output(
-            stage.run(every, fidelity),
-            lambda found: [page.settled(read(found).conditions)],
-            request.out,
-        )
+        made = stage.run(every, fidelity)
+        return Output.of(made, lambda runs: [page.settled(runs.conditions)], request.out)
     if range_:
         usual = {"--model": None} if model == COMPLIANT else {}
         chosen = {"--accuracy": accuracy, "--budget": budget}

@@ -115,8 +115,7 @@ def chosen(
             "there is no cost study of this scene with this code: run tipoff cost --scene "
             f"{name if name in catalog() else 'FILE'} first"
         )
-    table = cost.STAGE.read(measured)
-    found = choice.choose(table, condition, compare.stored(whole), accuracy, budget)
+    found = choice.choose(measured.result, condition, compare.stored(whole), accuracy, budget)
     say(found.why)
     point = found.point
     if point.rung == "highfi":
@@ -134,7 +133,7 @@ def chosen(
     agreement = None
     if point.degree is not None or point.rung not in _COMPARED:
         error = "unknown" if point.error_deg_s is None else f"{point.error_deg_s:.2g} deg/s"
-        agreement = f"not in the agreement table; error {error} on {table.condition} (tipoff cost)"
+        agreement = f"not in the agreement table; error {error} on {measured.result.condition} (tipoff cost)"
     return result_of(study, condition, request, quiet, agreement) | {"chosen": found.plain()}
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from tipoff.studies.stability import contacts, elastic, guides, thrusts
 from tipoff.studies.stability.verdict import Verdict
 from tipoff.workspace.progress import Board
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 
 CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES, **elastic.CASES}
@@ -25,8 +25,8 @@ class HardCases:
     failed: tuple[str, ...]
 
 
-def run(study: Study) -> dict:
-    """The content of ``HardCases``."""
+def run(study: Study) -> Made[HardCases]:
+    """The hard cases."""
 
     def make() -> tuple[HardCases, list[Path]]:
         found = []

@@ -19,7 +19,7 @@ from tipoff.studies.sweeps.factors import FACTORS, SIZES, Factor
 from tipoff.studies.sweeps.options import FEWEST, Options
 from tipoff.studies.sweeps.results import Curve, Launch, Sides, Sweeps, Swept
 from tipoff.workspace.progress import Board
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
 
 NAME = "sweeps"
@@ -32,8 +32,8 @@ _COARSER = 5  # directions of the ensemble for each direction of the maps of wal
 _DEPARTS = 0.05
 
 
-def run(study: Study, options: Options = Options()) -> dict:
-    """The content of ``Sweeps``. Raises SceneError for bad input, before anything runs."""
+def run(study: Study, options: Options = Options()) -> Made[Sweeps]:
+    """Rates over the size of each error. Raises SceneError for bad input, before anything runs."""
 
     def make() -> tuple[Sweeps, list[Path]]:
         model = population.surrogate(study, options.model)

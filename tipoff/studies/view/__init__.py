@@ -23,7 +23,7 @@ def _answer(request: Request, options: Options) -> Output:
     from tipoff.studies.view import page, stage
 
     found = stage.run(request.study(), options)
-    return Output(found, lambda found: page.terminal(stage.read(found), request.out))
+    return Output.of(found, lambda found: page.terminal(found, request.out))
 
 
 def _load() -> Contents:

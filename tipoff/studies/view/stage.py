@@ -23,7 +23,7 @@ from tipoff.scenes.names import NOMINAL
 from tipoff.studies.view.options import Options
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run
-from tipoff.workspace.stage import Stage
+from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, require_success
 from tipoff.workspace.words import counted
 
@@ -80,8 +80,8 @@ class View:
     without_pictures: str
 
 
-def run(study: Study, options: Options = Options()) -> dict:
-    """The content of ``View``. Raises SceneError for an unknown condition or fewer than two frames,
+def run(study: Study, options: Options = Options()) -> Made[View]:
+    """Files of stress and motion. Raises SceneError for an unknown condition or fewer than two frames,
     StudyError where the run fails."""
     name = options.condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
     options = replace(options, condition=name)
@@ -112,16 +112,11 @@ def stage_of(condition: str) -> Stage:
     return Stage(f"view/{condition}", __name__, options=Options, inputs=inputs, result=View)
 
 
-def read(found: dict) -> View:
-    """The result in the content of its file."""
-    return stage_of(found["condition"]).read(found)
-
-
 def stored(study: Study) -> list[View]:
     """The stored results of the present scene, code and settings."""
     again = "the report does without it until tipoff view makes it again"
     found = [stage_of(name).stored(study) for name in sorted([*study.scene.conditions, NOMINAL])]
-    return [read(item) for item in found if item and study.whole(item, again)]
+    return [item.result for item in found if item and study.whole(item.document, again)]
 
 
 def pyvista_version() -> str | None:
