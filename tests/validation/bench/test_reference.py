@@ -103,7 +103,9 @@ def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, figures, few, erro
     assert min(split[f"{name}_us"] for name in ("elements", "contact", "bodies", "samples")) > 0.0
     parts = ("elements", "nodes", "joints", "contact", "bodies")
     apart = sum(split[f"{name}_error_us"] for name in (*parts, "step"))
-    assert sum(split[f"{name}_us"] for name in parts) == pytest.approx(split["step_us"], rel=1e-9, abs=apart)
+    assert sum(split[f"{name}_us"] for name in parts) == pytest.approx(
+        split["step_us"], rel=1e-9, abs=apart
+    )
     monkeypatch.setattr(registry, "ADDED", [*STUDIES])
     page = render(
         Page(load("tiny"), tmp_path, {"bench": reference.stored(tmp_path)}, Runs({}, {}, {}), {})
