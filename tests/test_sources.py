@@ -173,6 +173,17 @@ def test_words_and_readers_forget_no_run(project, file, old, new):
     assert runs() == before
 
 
+@pytest.mark.parametrize(("room", "forgotten"), [("meshes", RUNS[::2]), ("thrusts", ())])
+def test_a_new_format_is_code_of_runs_without_an_import(project, room, forgotten):
+    """A file in the folder of meshes, whose elements no hash of a scene has. Control: a thrust, whose
+    values it has."""
+    before = dict(zip(RUNS, runs()))
+    (project / "tipoff" / "formats" / room / "another.py").write_text("FORMATS = ()\n")
+    forget()
+    after = dict(zip(RUNS, runs()))
+    assert [module for module in RUNS if after[module] != before[module]] == list(forgotten)
+
+
 @pytest.mark.parametrize(
     ("file", "old", "new", "forgotten"),
     [

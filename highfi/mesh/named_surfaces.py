@@ -8,11 +8,11 @@ no surface elements have its name.
 import meshio
 import numpy as np
 
+from tipoff.formats.meshes.blocks import LEFT_OUT, any_case, is_surface
 from tipoff.highfi.mesh.asked import AS_DRAWN, Asked
 from tipoff.highfi.mesh.boxes import chosen
 from tipoff.highfi.mesh.cells import Kind
 from tipoff.highfi.mesh.file_elements import corners
-from tipoff.highfi.mesh.files.tables import LEFT_OUT, any_case, is_surface
 
 # corners of the surface elements of files
 _CORNERS = {

@@ -1,4 +1,4 @@
-"""Rail mesh as plain arrays, read from a file (``highfi.mesh.files``) and checked.
+"""Rail mesh as plain arrays, read from a file (``formats.meshes``) and checked.
 
 A mesh needs hexahedra or tetrahedra (`mesh.file_elements`), at least one named group of their faces
 that starts with `contact` (the walls pads touch) and one named `mount` (fixed to the platform). Nodes
@@ -18,6 +18,8 @@ import meshio
 import numpy as np
 
 from tipoff.faults import InputError
+from tipoff.formats.meshes.blocks import Unreadable
+from tipoff.formats.meshes.reader import read_mesh_file
 from tipoff.highfi.mesh import file_elements
 from tipoff.highfi.mesh.asked import AS_DRAWN, Asked
 from tipoff.highfi.mesh.cells import (
@@ -28,8 +30,6 @@ from tipoff.highfi.mesh.cells import (
     thickness,
 )
 from tipoff.highfi.mesh.file_elements import FILE_ELEMENTS
-from tipoff.highfi.mesh.files.opened import opened
-from tipoff.highfi.mesh.files.tables import Unreadable
 from tipoff.highfi.mesh.named_surfaces import Boundary, named_surfaces
 
 SUPPORTED = "hexahedra of 8, 20 or 27 nodes and tetrahedra of 4 or 10 nodes"
@@ -65,7 +65,7 @@ class RailMesh:
 
 
 def read(source, asked: Asked = AS_DRAWN, made_here: bool = False) -> RailMesh:
-    """Check and convert a meshio mesh, or the path of a file in a format of ``files.opened``;
+    """Check and convert a meshio mesh, or the path of a file in a format of ``formats.meshes``;
     ``asked`` says how the file differs from the scene, and which of its parts are the rail. Warnings
     about a mesh that was ``made_here`` do not list numbers of elements.
 
@@ -154,7 +154,7 @@ def listed(elements: np.ndarray) -> str:
 
 def _opened(path: Path) -> meshio.Mesh:
     try:
-        return opened(path)
+        return read_mesh_file(path)
     except (Unreadable, OSError) as fault:
         raise MeshError(f"{path} cannot be used: {fault}\n  {DESCRIBED}") from fault
 

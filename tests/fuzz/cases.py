@@ -13,8 +13,8 @@ import numpy as np
 import typer
 
 from tests.formats.curves import adams_files, dyna_files
+from tests.formats.meshes import forms
 from tests.fuzz import mutants, results, sections
-from tests.highfi.mesh import forms
 from tipoff import scenes
 from tipoff.comparison.curves import Curves
 from tipoff.comparison.layout import of_options

@@ -28,7 +28,7 @@ from pydantic import (
 )
 
 from tipoff.files import open_input
-from tipoff.scenes import keyword_files
+from tipoff.formats.meshes import lsdyna_includes
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail_base import DrawnTable, HeldBySpans
 from tipoff.scenes.rounding import at_most, below
@@ -89,7 +89,7 @@ class _FileTable(DrawnTable):
         return self
 
     def _digest_now(self) -> str:
-        return keyword_files.digest(self.path())
+        return lsdyna_includes.digest(self.path())
 
     def is_as_found(self) -> bool:
         """Whether the file and those that it includes have not changed since the scene was read."""
@@ -106,8 +106,8 @@ class _FileTable(DrawnTable):
 
 def _readable(file: str) -> str:
     try:
-        if Path(file).suffix.lower() in keyword_files.SUFFIXES:
-            keyword_files.pieces(Path(file))
+        if Path(file).suffix.lower() in lsdyna_includes.SUFFIXES:
+            lsdyna_includes.pieces(Path(file))
         with open_input(file) as stream:
             stream.read(1)
     except OSError as error:

@@ -4,7 +4,7 @@ import meshio
 import numpy as np
 import pytest
 
-from tests.highfi.mesh import seeds
+from tests.formats.meshes import seeds
 from tipoff.highfi.elements import hexahedron
 from tipoff.highfi.mesh import facets, file_elements
 from tipoff.highfi.mesh.cells import HEXAHEDRON, TETRAHEDRON, edge_lengths

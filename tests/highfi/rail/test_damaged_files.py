@@ -12,9 +12,9 @@ from tests.highfi.support import COARSE, tiny
 from tests.meshes.test_imprint import BESIDE, TOP
 from tests.meshes.test_solid import drawn, drilled, scene_of
 from tipoff import highfi
+from tipoff.formats.meshes.memory_limit import limited
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
-from tipoff.highfi.mesh.memory_limit import limited
 from tipoff.highfi.mesh.rail_mesh import MeshError, read
 from tipoff.highfi.rail import solid_process, step_cost
 from tipoff.highfi.rail.scene_mesh import make_mesh

@@ -155,7 +155,7 @@ def with_boxes(scene, boxes, **keys):
 
 def plate(tmp_path, name="plate.inp"):
     """A scene of the channel whose file is a plate of 40 x 20 x 8 mm in 4 x 2 x 1 bricks."""
-    from tests.highfi.mesh import seeds
+    from tests.formats.meshes import seeds
 
     points, cells, _ = seeds.rail()
     meshio.Mesh(points, [("hexahedron", cells)]).write(tmp_path / name)

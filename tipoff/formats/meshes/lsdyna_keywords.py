@@ -12,8 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from tipoff.highfi.mesh.files.tables import Unreadable, decoded
-from tipoff.scenes.keyword_files import Piece
+from tipoff.formats.meshes.blocks import Unreadable, decoded
+from tipoff.formats.meshes.lsdyna_includes import Piece
 
 STANDARD, I10, LONG = "standard", "i10", "long"
 _MARKS = {"+": LONG, "-": STANDARD, "%": I10}

@@ -1,7 +1,7 @@
 """The small rail as a keyword file of LS-DYNA, in the columns of the Keyword User's Manual, volume I:
 ``*NODE`` has 8, 16, 16, 16, 8, 8 columns, ``*ELEMENT`` 8 each, ``*PART`` and ``*SET`` 10 each."""
 
-from tests.highfi.mesh import seeds
+from tests.formats.meshes import seeds
 
 STANDARD, I10, LONG, FREE = "standard", "i10", "long", "free"
 HEADERS = {STANDARD: "*KEYWORD", I10: "*KEYWORD I10=Y", LONG: "*KEYWORD LONG=Y", FREE: "*KEYWORD"}

@@ -18,12 +18,13 @@ from collections.abc import Iterator
 import meshio
 import numpy as np
 
-from tipoff.highfi.mesh.files.tables import (
+from tipoff.formats.meshes.blocks import (
     Block,
+    MeshFormat,
     Unreadable,
     any_case,
     decoded,
-    mesh,
+    joined_mesh,
     real,
     whole,
 )
@@ -58,7 +59,7 @@ _CORNERS = {3: ("triangle", [0, 1, 2]), 4: ("quad", [0, 1, 2, 3])} | {
 Lines = list[tuple[int, str]]  # number and text of each
 
 
-def read(content: bytes) -> meshio.Mesh:
+def read_universal(content: bytes) -> meshio.Mesh:
     """The mesh in the ``content`` of a file. Raises Unreadable."""
     labels: list[int] = []
     points: list[list[float]] = []
@@ -85,7 +86,7 @@ def read(content: bytes) -> meshio.Mesh:
     }
     nodes = {name: np.array(found[_NODE], dtype=np.int64) for name, found in groups.items()}
     numbers = np.array(labels, dtype=np.int64)
-    return mesh(numbers, np.array(points, dtype=float), blocks, sets, nodes)
+    return joined_mesh(numbers, np.array(points, dtype=float), blocks, sets, nodes)
 
 
 def _datasets(text: str) -> Iterator[tuple[str, Lines]]:
@@ -189,3 +190,19 @@ def _groups(lines: Lines, width: int, groups: dict[str, dict[int, list[int]]]) -
         found = groups.setdefault(any_case(name) or name, {_NODE: [], _ELEMENT: []})
         for kind, numbers in found.items():
             numbers += members[members[:, 0] == kind, 1].tolist()
+
+
+FORMATS = (
+    MeshFormat(
+        "I-deas",
+        read_universal,
+        [
+            (
+                "I-deas, Salome, NX `.unv`",
+                "datasets 2411, 781, 2412, 2420",
+                "groups 2467, 2477, 2452, 2435, 2432, 2430, 2429, 2417, of elements or nodes",
+            )
+        ],
+        suffixes=(".unv",),
+    ),
+)

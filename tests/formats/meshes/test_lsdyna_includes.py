@@ -4,8 +4,8 @@ file, and the key of a mesh contains the content of all of them."""
 import numpy as np
 import pytest
 
-from tests.highfi.mesh import lsdyna_text
-from tests.highfi.mesh.test_mesh_files import check_rail, read_text
+from tests.formats.meshes import lsdyna_text
+from tests.formats.meshes.test_mesh_files import check_rail, read_text
 from tests.scenes.support import refused, small
 from tipoff.highfi.mesh.rail_mesh import MeshError, read
 from tipoff.highfi.rail.geometry import geometry

@@ -12,8 +12,8 @@ import re
 import meshio
 import numpy as np
 
-from tipoff.highfi.mesh.files.sections import INT, REAL, Binary, Section, Text
-from tipoff.highfi.mesh.files.tables import Block, Unreadable, mesh
+from tipoff.formats.meshes.blocks import Block, MeshFormat, Unreadable, joined_mesh
+from tipoff.formats.meshes.gmsh_sections import INT, REAL, Binary, Section, Text
 
 # name in meshio, nodes and dimension of each element type
 _TYPES = {
@@ -111,7 +111,7 @@ class _File:
         return found
 
 
-def read(content: bytes) -> meshio.Mesh:
+def read_gmsh(content: bytes) -> meshio.Mesh:
     """The mesh in the ``content`` of a file. Raises Unreadable."""
     file = _File(content)
     names = _names(file)
@@ -127,7 +127,7 @@ def read(content: bytes) -> meshio.Mesh:
         labels, points = _nodes(file)
         blocks, owners = _elements(file)
         groups = _groups(blocks, names, [_members(entities, owner) for owner in owners])
-    return mesh(labels, points, [_in_vtk_order(block) for block in blocks], groups)
+    return joined_mesh(labels, points, [_in_vtk_order(block) for block in blocks], groups)
 
 
 _TYPES_BY_NAME = {name: dimension for name, _, dimension in _TYPES.values()}
@@ -331,3 +331,19 @@ def _elements(file: _File) -> tuple[list[Block], list[tuple[int, int]]]:
         blocks.append(Block(kind, rows[:, 0], rows[:, 1:]))
         owners.append((int(dimension), int(entity)))
     return blocks, owners
+
+
+FORMATS = (
+    MeshFormat(
+        "gmsh",
+        read_gmsh,
+        [
+            (
+                "gmsh `.msh` 2.2 and 4.1, text or binary; 4.0, text",
+                "all elements",
+                "physical groups; without a name `surface 3`, `volume 1`",
+            )
+        ],
+        suffixes=(".msh",),
+    ),
+)

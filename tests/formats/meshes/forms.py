@@ -6,7 +6,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from tests.highfi.mesh import lsdyna_text, seeds
+from tests.formats.meshes import lsdyna_text, seeds
 from tipoff.meshes import msh
 
 OWN = {

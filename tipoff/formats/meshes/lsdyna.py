@@ -10,17 +10,18 @@ from collections.abc import Iterator, Sequence
 import meshio
 import numpy as np
 
-from tipoff.highfi.mesh.files.lsdyna_text import Keyword, keywords, named
-from tipoff.highfi.mesh.files.tables import (
+from tipoff.formats.meshes.blocks import (
     Block,
+    MeshFormat,
     Unreadable,
     any_case,
     is_surface,
-    mesh,
+    joined_mesh,
     real,
     whole,
 )
-from tipoff.scenes.keyword_files import Piece
+from tipoff.formats.meshes.lsdyna_includes import SUFFIXES, Piece, pieces
+from tipoff.formats.meshes.lsdyna_keywords import Keyword, keywords, named
 
 _NODE, _ELEMENT, _OTHER = [8, 16, 16, 16], [8] * 10, [10] * 8
 # lines of nodes below a line with the number and the part
@@ -68,7 +69,7 @@ class _Model:
         self.elements.setdefault((group, kind, part), {})[label] = nodes
 
 
-def read(pieces: Sequence[Piece]) -> meshio.Mesh:
+def read_keyword_file(pieces: Sequence[Piece]) -> meshio.Mesh:
     """The mesh in the ``pieces`` of a file and its includes. Raises Unreadable."""
     model = _Model()
     for keyword in keywords(pieces):
@@ -314,7 +315,9 @@ def _mesh(model: _Model) -> meshio.Mesh:
         name: [parts.get(place, nothing) for place in range(len(blocks))]
         for name, parts in chosen.items()
     }
-    return mesh(labels, np.array(model.points, dtype=float), blocks, groups, nodes, model.left_out)
+    return joined_mesh(
+        labels, np.array(model.points, dtype=float), blocks, groups, nodes, model.left_out
+    )
 
 
 def _inside(labels: np.ndarray, members: list[tuple[int, ...]]) -> np.ndarray:
@@ -323,3 +326,23 @@ def _inside(labels: np.ndarray, members: list[tuple[int, ...]]) -> np.ndarray:
     for first, last in (row for row in members if len(row) == 2):
         found |= (labels >= first) & (labels <= last)
     return found
+
+
+FORMATS = (
+    MeshFormat(
+        "LS-DYNA",
+        read_keyword_file,
+        [
+            (
+                "LS-DYNA `.k`, `.key`, `.dyn`",
+                "`*NODE`, `*ELEMENT_SOLID` in one line or two, `*ELEMENT_SHELL`, `*PART`; "
+                "fixed, `I10=Y`, `LONG=Y` and free fields",
+                "titles of `*SET_SEGMENT`, `*SET_NODE`, `*SET_SHELL`, `*SET_PART`, sums of "
+                "them (`_ADD`) and `*PART`; without a title `segment set 3`, `node set 3`, "
+                "`part 3`",
+            )
+        ],
+        suffixes=SUFFIXES,
+        pieces=pieces,
+    ),
+)

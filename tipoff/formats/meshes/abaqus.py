@@ -5,29 +5,116 @@ A set has all members from any line of the file: elements under its ``*ELEMENT``
 ranges and other sets under ``*ELSET``; so has a set of nodes with ``*NODE`` and ``*NSET``. Names of
 sets do not depend on case. A ``*SURFACE`` of element faces or of nodes is a named group as well, and
 so are instances and parts. See "Keywords reference" of the Abaqus guides.
+Element types are in section "Element library".
 """
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import meshio
 import numpy as np
 
-from tipoff.highfi.mesh.files import abaqus_types
-from tipoff.highfi.mesh.files.abaqus_groups import gathered
-from tipoff.highfi.mesh.files.abaqus_model import ROOT, Body, Model, Reference
-from tipoff.highfi.mesh.files.abaqus_text import Keyword, keywords
-from tipoff.highfi.mesh.files.tables import Unreadable, decoded, real, whole
+from tipoff.formats.meshes.abaqus_groups import ROOT, Body, Model, Reference, gathered
+from tipoff.formats.meshes.blocks import MeshFormat, Unreadable, decoded, real, whole
+
+# Keywords that make or move nodes or elements in ways that are not read here.
+_MAKERS = {
+    *("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "IMPORT", "INCLUDE"),
+    *("PARAMETER", "SUBMODEL", "SUBSTRUCTURE"),
+}
+_SOLIDS = {
+    4: "tetra",
+    6: "wedge",
+    8: "hexahedron",
+    10: "tetra10",
+    15: "wedge15",
+    20: "hexahedron20",
+    27: "hexahedron27",
+}
+_FACES = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"}
+_SOLID = re.compile(r"^(?:C3D|DC3D|AC3D)(\d+)[A-Z]*$")
+_FACE = re.compile(r"^(?:S|M3D|SFM3D|R3D|CPS|CPE|CAX|DS|DC2D)(\d)[A-Z]*\d?$")
+_TRIANGULAR_SHELLS = {"STRI3": 3, "STRI65": 6}
+# elements of lines and points, which carry no surface
+_OTHER = re.compile(
+    r"^(?:T2D|T3D|B2|B3|PIPE|ELBOW|FRAME|R2D|RAX|RB|MASS|ROTARYI|SPRING|DASHPOT|GAP|CONN|DCOUP|"
+    r"SAX|HEATCAP|D$|U1$)"
+)
 
 
-def read(content: bytes) -> meshio.Mesh:
+class _Keyword(NamedTuple):
+    """A keyword with its parameters and data."""
+
+    name: str  # capitals, without the star
+    given: dict[str, str]  # parameters in capitals; a value may be empty
+    data: list[tuple[int, list[str]]]  # number of a line and its fields
+    line: int
+
+    def of(self, parameter: str) -> str:
+        """Value of a required parameter. Raises Unreadable without it."""
+        value = self.given.get(parameter, "")
+        if not value:
+            raise Unreadable(f"line {self.line}: *{self.name} without {parameter}=")
+        return value
+
+
+def _keywords(text: str) -> Iterator[_Keyword]:
+    """The keywords of a file in their order. Raises Unreadable for keywords that make or move nodes
+    and elements."""
+    current: _Keyword | None = None
+    header, start = "", 0
+    for number, raw in enumerate(text.splitlines(), start=1):
+        line = raw.strip()
+        if not line or line.startswith("**"):
+            continue
+        if header and not line.startswith("*"):  # parameters go on behind a comma
+            header += line
+        elif line.startswith("*"):
+            if current is not None:
+                yield current
+            header, start = line, number
+        else:
+            if current is None:
+                raise Unreadable(f"line {number}: data before the first keyword")
+            fields = [field.strip() for field in line.split(",")]
+            current.data.append((number, fields[:-1] if fields[-1] == "" else fields))
+            continue
+        if header.endswith(","):
+            current = None
+            continue
+        current, header = _keyword(header, start), ""
+    if current is not None:
+        yield current
+
+
+def _keyword(header: str, line: int) -> _Keyword:
+    name, *parameters = [part.strip() for part in header[1:].split(",")]
+    given = {}
+    for parameter in parameters:
+        key, _, value = parameter.partition("=")
+        given[key.strip().upper()] = value.strip().strip('"')
+    name = " ".join(name.upper().split())
+    is_elsewhere = name in ("NODE", "ELEMENT", "ELSET", "SURFACE") and "INPUT" in given
+    if name in _MAKERS or is_elsewhere:
+        raise Unreadable(
+            f"line {line}: *{name}{' with INPUT' * is_elsewhere} is not read; write the file with all "
+            "nodes, elements and sets in it"
+        )
+    return _Keyword(name, given, [], line)
+
+
+def read_abaqus(content: bytes) -> meshio.Mesh:
     """The mesh in the ``content`` of a file. Raises Unreadable."""
     model = Model()
-    for keyword in keywords(decoded(content)):
+    for keyword in _keywords(decoded(content)):
         _take(model, keyword)
     if not any(body.labels for body in model.bodies.values()):
         raise Unreadable("no *NODE, which an input file of Abaqus has")
     return gathered(model)
 
 
-def _take(model: Model, keyword: Keyword) -> None:
+def _take(model: Model, keyword: _Keyword) -> None:
     match keyword.name:
         case "NODE":
             _nodes(model, keyword)
@@ -48,7 +135,7 @@ def _take(model: Model, keyword: Keyword) -> None:
             model.current, model.scope = model.bodies[ROOT], ROOT
 
 
-def _nodes(model: Model, keyword: Keyword) -> None:
+def _nodes(model: Model, keyword: _Keyword) -> None:
     body = model.current
     if keyword.given.get("SYSTEM", "R").upper() != "R":
         raise Unreadable(f"line {keyword.line}: *NODE in a system that is not rectangular")
@@ -69,8 +156,8 @@ def _add(
     sets.setdefault(model.named(name), []).extend(lines)
 
 
-def _elements(model: Model, keyword: Keyword) -> None:
-    body, found = model.current, abaqus_types.known(keyword.of("TYPE"))
+def _elements(model: Model, keyword: _Keyword) -> None:
+    body, found = model.current, _element_type(keyword.of("TYPE"))
     labels = []
     if found is None:
         labels = [whole(fields[0], line) for line, fields in keyword.data]
@@ -98,7 +185,7 @@ def _elements(model: Model, keyword: Keyword) -> None:
         _add(model, body.sets, name, labels, keyword.line)
 
 
-def _set(model: Model, keyword: Keyword, sets: dict[str, list[Reference]]) -> None:
+def _set(model: Model, keyword: _Keyword, sets: dict[str, list[Reference]]) -> None:
     members = sets.setdefault(model.named(keyword.of(keyword.name)), [])
     if keyword.name == "NSET" and "ELSET" in keyword.given:
         raise Unreadable(f"line {keyword.line}: *NSET of an element set; write its nodes")
@@ -125,7 +212,7 @@ def _reference(field: str, scope: str, line: int) -> Reference:
     return Reference(scope, range(0), field.strip('"').upper(), line)
 
 
-def _surface(model: Model, keyword: Keyword) -> None:
+def _surface(model: Model, keyword: _Keyword) -> None:
     kind = keyword.given.get("TYPE", "ELEMENT").upper()
     if kind == "NODE":
         nodes = model.current.node_sets.setdefault(model.named(keyword.of("NAME")), [])
@@ -148,7 +235,7 @@ def _surface(model: Model, keyword: Keyword) -> None:
             members.append((_reference(fields[0], model.scope, line), face))
 
 
-def _instance(model: Model, keyword: Keyword) -> None:
+def _instance(model: Model, keyword: _Keyword) -> None:
     model.scope, part = keyword.of("NAME").upper(), keyword.given.get("PART", "").upper()
     if part and part not in model.parts:
         raise Unreadable(f"line {keyword.line}: no part {part}")
@@ -191,3 +278,44 @@ def _placed(points: np.ndarray, numbers: list[list[float]], line: int) -> np.nda
             + np.outer(turned @ axis, axis) * (1.0 - np.cos(radians))
         )
     return points
+
+
+def _element_type(name: str) -> tuple[str, int] | None:
+    """Name in meshio and number of nodes of an element type; None for elements of lines and points.
+
+    Raises Unreadable for a type that is not known, which may be a solid.
+    """
+    plain = name.upper()
+    if found := _SOLID.match(plain):
+        nodes, names = int(found[1]), _SOLIDS
+    elif plain in _TRIANGULAR_SHELLS:
+        nodes, names = _TRIANGULAR_SHELLS[plain], _FACES
+    elif found := _FACE.match(plain):
+        nodes, names = int(found[1]), _FACES
+    else:
+        if _OTHER.match(plain):
+            return None
+        nodes, names = 0, {}
+    if nodes not in names:
+        raise Unreadable(
+            f"elements of type {name[:40]}, which are not known; solids are C3D8 or C3D10, surfaces "
+            "are shells such as S4 or STRI65"
+        )
+    return names[nodes], nodes
+
+
+FORMATS = (
+    MeshFormat(
+        "Abaqus",
+        read_abaqus,
+        [
+            (
+                "Abaqus, CalculiX `.inp`",
+                "`*NODE`, `*ELEMENT`, `*PART`, `*INSTANCE` with its place and rotation",
+                "`*ELSET` of shells, `*NSET`, `*SURFACE` of sides `S1`... or of nodes; "
+                "`GENERATE`, sets of sets",
+            )
+        ],
+        suffixes=(".inp",),
+    ),
+)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import meshio
 import numpy as np
 
-from tipoff.highfi.mesh.files.tables import Block, Unreadable, any_case, mesh
+from tipoff.formats.meshes.blocks import Block, MeshFormat, Unreadable, any_case, joined_mesh
 
 if TYPE_CHECKING:
     import h5py
@@ -45,7 +45,7 @@ _HEXAHEDRON = [0, 3, 2, 1, 4, 7, 6, 5]
 _OTHER = ("PO1", "SE2", "SE3", "SE4")  # points and lines
 
 
-def read(content: bytes) -> meshio.Mesh:
+def read_med(content: bytes) -> meshio.Mesh:
     """The mesh in the ``content`` of a file. Raises Unreadable."""
     import h5py
 
@@ -89,7 +89,7 @@ def _read(file: "h5py.File") -> meshio.Mesh:
         groups[name] = [np.flatnonzero(np.isin(family, numbers)) for family in families]
     own = _families(body["NOE"], len(points))
     sets = {name: labels[np.isin(own, numbers)] for name, numbers in _names(given, "NOEUD").items()}
-    return mesh(labels, points, blocks, groups, sets)
+    return joined_mesh(labels, points, blocks, groups, sets)
 
 
 def _table(data: "h5py.Dataset", width: int) -> np.ndarray:
@@ -136,3 +136,19 @@ def _outward(kind: str, points: np.ndarray, nodes: np.ndarray) -> np.ndarray:
     with np.errstate(over="ignore", invalid="ignore"):
         volume = np.linalg.det(corners[:, ends] - corners[:, :1])
     return np.where(volume[:, None] < 0.0, nodes[:, order], nodes)
+
+
+FORMATS = (
+    MeshFormat(
+        "Salome",
+        read_med,
+        [
+            (
+                "Salome, Code_Aster `.med`",
+                "one mesh, one time step",
+                "groups of elements or nodes",
+            )
+        ],
+        suffixes=(".med",),
+    ),
+)

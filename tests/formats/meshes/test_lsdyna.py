@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tests.highfi.mesh import lsdyna_text, seeds
+from tests.formats.meshes import lsdyna_text, seeds
+from tests.formats.meshes.test_mesh_files import WHOLE, areas, check_rail, lowest, read_text
 from tests.highfi.mesh.test_file_elements import plate
-from tests.highfi.mesh.test_mesh_files import WHOLE, areas, check_rail, lowest, read_text
 from tipoff.highfi.mesh.rail_mesh import MeshError, read
 from tipoff.meshes import generator
 

@@ -1,13 +1,18 @@
-"""Shared by the readers of all formats: their fault, numbers of nodes converted to places in a
-list, and a mesh made of blocks of elements with named groups."""
+"""Shared by the readers of all formats: their declaration, their fault, numbers of nodes converted to
+places in a list, and a mesh made of blocks of elements with named groups."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
 import meshio
 import numpy as np
+
+from tipoff.formats.declared import Format
+from tipoff.formats.meshes.lsdyna_includes import Piece
 
 LEFT_OUT = "left out"  # key of the reasons, by the name of a group, in the info of a mesh
 _LISTED = 5  # numbers in one message
@@ -16,6 +21,16 @@ _LISTED = 5  # numbers in one message
 class Unreadable(ValueError):
     """A file that is not valid in its format, or has contents that are not read here; the message
     gives the place and the remedy."""
+
+
+@dataclass(frozen=True)
+class MeshFormat(Format):
+    """A format of meshes: ``read`` makes a ``meshio.Mesh`` from the content of a file, in UTF-8 if it is
+    a text. Its ``cell_sets`` has every group of elements and ``point_sets`` every group of nodes. It
+    raises Unreadable."""
+
+    # the pieces of a file that includes others; ``read`` gets them in place of the content
+    pieces: Callable[[Path], list[Piece]] | None = None
 
 
 _EXPONENT = re.compile(r"^([-+]?[\d.]+)([-+]\d+)$")  # 7.0-1 for 7.0E-1
@@ -77,7 +92,7 @@ def shown(numbers: Iterable) -> str:
     return text if len(every) <= _LISTED else f"{text} and {len(every) - _LISTED} more"
 
 
-def mesh(
+def joined_mesh(
     labels: np.ndarray,
     points: np.ndarray,
     blocks: Sequence[Block],

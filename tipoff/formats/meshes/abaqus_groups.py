@@ -1,16 +1,72 @@
-"""Members of the sets and surfaces of an Abaqus input file, and the mesh with these groups."""
+"""Contents of an Abaqus input file, the members of its sets and surfaces, and the mesh with these groups."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import NamedTuple
 
 import meshio
 import numpy as np
 
-from tipoff.highfi.mesh.files.abaqus_model import Body, Model, Reference
-from tipoff.highfi.mesh.files.abaqus_types import FACES
-from tipoff.highfi.mesh.files.tables import Block, Unreadable, any_case, mesh, shown
+from tipoff.formats.meshes.blocks import Block, Unreadable, any_case, joined_mesh, shown
 
 _SIDES = ("", "SPOS", "SNEG")  # of a shell
+ROOT = ""  # name of the body of lines outside all parts
+# Corners of the faces S1, S2, ... of solids, as places in the list of nodes of an element.
+_OF_HEXAHEDRON = (
+    "quad",
+    [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]],
+)
+_OF_TETRAHEDRON = ("triangle", [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])
+FACES = {
+    **dict.fromkeys(("hexahedron", "hexahedron20", "hexahedron27"), _OF_HEXAHEDRON),
+    **dict.fromkeys(("tetra", "tetra10"), _OF_TETRAHEDRON),
+}
+
+
+class Reference(NamedTuple):
+    """Members that a line adds to a set: elements or nodes by a range or a number, or another
+    set."""
+
+    scope: str  # name of the part or instance
+    numbers: range  # empty for a set
+    name: str  # of a set in capitals, empty for numbers
+    line: int
+
+
+class Body:
+    """Nodes and elements of a part, of an instance, or of a file without parts."""
+
+    def __init__(self, part: str = "") -> None:
+        self.part = part  # name of the part of an instance
+        self.labels: list[int] = []
+        self.points: list[list[float]] = []
+        # elements of one type: their numbers and nodes
+        self.elements: dict[str, dict[int, tuple[int, ...]]] = {}
+        self.others: set[int] = set()  # numbers of elements of lines and points
+        self.sets: dict[str, list[Reference]] = {}
+        self.node_sets: dict[str, list[Reference]] = {}
+        self.surfaces: dict[str, list[tuple[Reference, str]]] = {}  # members and their faces
+
+    def has(self, label: int) -> bool:
+        """Whether an element has this number."""
+        return label in self.others or any(label in found for found in self.elements.values())
+
+
+class Model:
+    """Bodies by the names under which they are read; names of sets as the file first writes
+    them."""
+
+    def __init__(self) -> None:
+        self.bodies: dict[str, Body] = {ROOT: Body()}
+        self.parts: dict[str, Body] = {}
+        self.written: dict[str, str] = {}  # names of groups by their capitals
+        self.left_out: dict[str, str] = {}  # groups that are not read as a whole, and why
+        self.current, self.scope = self.bodies[ROOT], ROOT
+
+    def named(self, name: str) -> str:
+        """Name of a set in capitals."""
+        self.written.setdefault(name.upper(), name)
+        return name.upper()
 
 
 class _Members:
@@ -99,7 +155,7 @@ def gathered(model: Model) -> meshio.Mesh:
     _add_elements(model, groups)
     every, parts = groups.finished()
     node_groups = _node_groups(model, shifts)
-    return mesh(
+    return joined_mesh(
         np.concatenate(labels), np.concatenate(points), every, parts, node_groups, model.left_out
     )
 

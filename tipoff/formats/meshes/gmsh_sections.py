@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tipoff.highfi.mesh.files.tables import Unreadable
+from tipoff.formats.meshes.blocks import Unreadable
 
 # types of numbers in binary files, by their meaning in the description of the format
 INT, REAL = "i4", "f8"

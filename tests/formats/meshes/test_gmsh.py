@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from tests.highfi.mesh import seeds
-from tests.highfi.mesh.test_mesh_files import WHOLE, areas, check_rail, plate, read_text
+from tests.formats.meshes import seeds
+from tests.formats.meshes.test_mesh_files import WHOLE, areas, check_rail, plate, read_text
 from tipoff.highfi.mesh.asked import Asked
 from tipoff.highfi.mesh.rail_mesh import MeshError, read
 from tipoff.meshes import generator

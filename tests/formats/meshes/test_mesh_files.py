@@ -6,7 +6,7 @@ import meshio
 import numpy as np
 import pytest
 
-from tests.highfi.mesh import forms, seeds
+from tests.formats.meshes import forms, seeds
 from tipoff.highfi.elements import hexahedron
 from tipoff.highfi.mesh import facets, touching
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, read
@@ -303,8 +303,8 @@ def test_what_a_file_of_nastran_gets_wrong_is_named(tmp_path, before, after, why
 @pytest.mark.parametrize(
     "name, content, why",
     [
-        ("rail.xdmf", "", "a mesh file ends in one of .msh, .inp"),
-        ("rail", "", "a mesh file ends in one of .msh, .inp"),
+        ("rail.xdmf", "", "a mesh file ends in one of .bdf, .dat, .dyn, .fem, .inp"),
+        ("rail", "", "a mesh file ends in one of .bdf, .dat, .dyn, .fem, .inp"),
         ("rail.msh", "(0 fluent)\n", "starts with .MeshFormat, this one with '.0 fluent"),
         ("rail.msh", "$MeshFormat\n1.0 0 8\n$EndMeshFormat\n", "format 1.0 of gmsh; save it in"),
         ("rail.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", "no .Nodes"),

@@ -12,17 +12,17 @@ from typing import Any
 import meshio
 import numpy as np
 
-from tipoff.highfi.mesh.files.tables import Unreadable, any_case
+from tipoff.formats.meshes.blocks import MeshFormat, Unreadable, any_case
 
 _MOST = 1000  # values of an array that are groups
 
 
-def read_xml(content: bytes) -> meshio.Mesh:
+def read_vtu(content: bytes) -> meshio.Mesh:
     """The mesh in the ``content`` of a ``.vtu`` file. Raises Unreadable."""
     return _read(content, meshio.vtu.read)
 
 
-def read_legacy(content: bytes) -> meshio.Mesh:
+def read_vtk(content: bytes) -> meshio.Mesh:
     """The mesh in the ``content`` of a ``.vtk`` file. Raises Unreadable."""
     return _read(content, meshio.vtk.read)
 
@@ -63,3 +63,18 @@ def _read(content: bytes, reader: Callable[[Any], meshio.Mesh]) -> meshio.Mesh:
         if np.ndim(part) == 1 and np.asarray(part).dtype.kind in "iufb"
     }
     return meshio.Mesh(points, found.cells, cell_sets=groups, point_sets=nodes)
+
+
+_GROUPS = (
+    "arrays that mark cells or points by a value other than 0; values of integers, "
+    "`CellEntityIds = 2`"
+)
+FORMATS = (
+    MeshFormat(
+        "VTK",
+        read_vtu,
+        [("VTK `.vtu`, `.vtk`", "as meshio reads them", _GROUPS)],
+        suffixes=(".vtu",),
+    ),
+    MeshFormat("VTK", read_vtk, (), suffixes=(".vtk",)),
+)

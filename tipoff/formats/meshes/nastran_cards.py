@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from tipoff.highfi.mesh.files.tables import Unreadable
+from tipoff.formats.meshes.blocks import Unreadable
 
 # A card with a number, which text before the bulk data, such as TITLE = rail 2, is not.
 _FREE = re.compile(r"\s*[A-Za-z]\w*\*?\s+\d+(\s[^=]*)?$")

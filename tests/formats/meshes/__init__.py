@@ -1,0 +1,1 @@
+"""The same small rail in files of every format."""

@@ -1,0 +1,1 @@
+"""Meshes of rails, one file for each format. ``reader`` is the entry."""
