@@ -8,7 +8,7 @@ import pint
 import pytest
 from typer.testing import CliRunner
 
-from docs.pages import command_line, meanings, scene_keys
+from docs.pages import command_line, format_tables, meanings, scene_keys
 from tipoff.scenes.scene import CATALOG
 from tipoff.scenes.table import Table
 from tipoff.studies.cli import app
@@ -25,6 +25,13 @@ class Unexplained(Table):
 def test_a_key_without_a_meaning_is_named():
     with pytest.raises(LookupError, match="Unexplained: no comment '#: ...' above length$"):
         meanings.meanings(Unexplained)
+
+
+def test_the_page_of_formats_has_every_declaration():
+    """Its file is as `python -m docs.pages.format_tables` writes it."""
+    page = format_tables.PAGE.read_text(encoding="utf-8")
+    assert page == format_tables.written()
+    assert "RockSim, `.rse`" in page and "Adams results `.res`" in page
 
 
 def test_the_page_of_the_keys_is_whole_without_a_site():

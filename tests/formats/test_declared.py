@@ -6,7 +6,7 @@ import pytest
 
 from tipoff.formats.declared import declared, of_suffix
 
-ROOMS = ("curves", "meshes", "sections", "thrusts")
+ROOMS = ("curves", "logs", "meshes", "sections", "thrusts")
 READER = """from tipoff.formats.declared import Format
 
 FORMATS = (Format("{name}", lambda path: "{name}", [("`.{name}`",)], suffixes=(".{name}",){more}),)

@@ -7,17 +7,20 @@ imported, so a file in the folder is enough for a format.
 import functools
 import importlib
 import pkgutil
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
+
+_PLACE = re.compile(r"\{formats of (\w+)\}")
 
 
 @dataclass(frozen=True)
 class Format:
     """One format of a room."""
 
-    name: str  # in messages
+    name: str  # in messages and in --help
     read: Callable[..., Any]  # its arguments are those of the room
     rows: Sequence[tuple[str, ...]]  # cells of its rows in the documentation, in Markdown
     suffixes: tuple[str, ...] = ()  # lower case, with the dot
@@ -38,6 +41,15 @@ def declared(room: str) -> tuple[Format, ...]:
     if len(set(suffixes)) < len(suffixes) or sum(each.is_any_other for each in found) > 1:
         raise ValueError(f"two formats of {room} for one file, among {', '.join(suffixes)}")
     return tuple(sorted(found, key=lambda each: each.is_any_other))
+
+
+def filled(text: str) -> str:
+    """A text with the names of the formats of a room in place of each ``{formats of ROOM}``."""
+    return _PLACE.sub(lambda place: _names(f"{__package__}.{place[1]}"), text)
+
+
+def _names(room: str) -> str:
+    return ", ".join(dict.fromkeys(each.name for each in declared(room)))
 
 
 def _modules(folder: Sequence[str]) -> list[pkgutil.ModuleInfo]:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 from typing import Annotated
 
 import typer
+from typer.core import TyperCommand
 
 from tipoff.studies.commands.options import Json
 from tipoff.studies.commands.running import Output, guarded
@@ -133,9 +134,25 @@ def flowed(text: str) -> str:
     )
 
 
+class _Command(TyperCommand):
+    """A command whose help lists formats of files. Their readers load when the help is shown."""
+
+    @property
+    def help(self) -> str:
+        from tipoff.formats.declared import filled
+
+        return filled(self._help)
+
+    @help.setter
+    def help(self, text: str) -> None:
+        self._help = text
+        self.short_help = text.partition("\n\n")[0]  # in the list of all commands
+
+
 def _listed(title: str, commands: Iterable[Callable[..., None]]) -> None:
     for command in commands:
-        app.command(help=flowed(command.__doc__ or ""), rich_help_panel=title)(command)
+        text = flowed(command.__doc__ or "")
+        app.command(help=text, rich_help_panel=title, cls=_Command)(command)
 
 
 def add(title: str, entries: Iterable[Entry]) -> None:

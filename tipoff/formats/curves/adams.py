@@ -132,7 +132,7 @@ def _is_adams(data: bytes) -> bool:
 
 FORMATS = (
     CurveFormat(
-        "Adams",
+        "results of Adams (.res)",
         read_adams,
         [
             (

@@ -199,7 +199,7 @@ FORMATS = (
         [
             (
                 "LS-DYNA `binout`, LSDA",
-                "the branches `rbdout` and `nodout`, with the same columns",
+                "the branches `rbdout` and `nodout`, with the columns of these files",
                 '`7`, or `"rbdout 7"`, `"nodout 1001"` if both have the number',
                 '`--units "time=ms, length=mm"`',
                 "scene",

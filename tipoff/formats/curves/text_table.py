@@ -52,7 +52,7 @@ def _spellings(cell: str) -> set[str]:
 
 FORMATS = (
     CurveFormat(
-        "table of text",
+        "table of text (CSV, Adams .tab, Abaqus .rpt, Exudyn)",
         read_text_table,
         [
             (

@@ -8,6 +8,7 @@ import numpy as np
 
 from tipoff.faults import Fault, SceneError
 from tipoff.files import read_input
+from tipoff.formats.declared import Format
 from tipoff.formats.instrument_table import PAGE, Written, read_table, scale, stated
 from tipoff.units import to_si
 
@@ -149,3 +150,36 @@ def _in_si(
         zero, one = np.array(lines[group]).T
         values[group] = zero + (one - zero) * found
     return values, notes
+
+
+FORMATS = (
+    Format(
+        "table of text",
+        read_sensor_log,
+        [
+            (
+                "EuRoC, `#timestamp [ns],w_RS_S_x [rad s^-1],...`",
+                '`rate = ["w_RS_S_x", ...]`, `acceleration = ["a_RS_S_x", ...]`',
+                "in the header",
+            ),
+            (
+                "Betaflight blackbox",
+                '`time = "time"`, `rate = ["gyroADC[0]", ...]`, `acceleration = ["accSmooth[0]", ...]`',
+                '`time = "us"`, `rate = "deg/s"`; counts of 1/2048 g are '
+                '`acceleration = "0.00478840332 m/s**2"`',
+            ),
+            (
+                "PX4, `ulog2csv`",
+                '`time = "timestamp"`, `rate = ["gyro_rad[0]", ...]`, '
+                '`acceleration = ["accelerometer_m_s2[0]", ...]`',
+                '`time = "us"`, `rate = "rad/s"`, `acceleration = "m/s**2"`',
+            ),
+            (
+                'phyphox and other apps, `"Time (s)","Gyroscope x (rad/s)",...`',
+                '`rate = ["Gyroscope x", ...]`, `acceleration = ["Acceleration x", ...]`',
+                "in the header",
+            ),
+        ],
+        is_any_other=True,
+    ),
+)

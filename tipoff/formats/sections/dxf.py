@@ -191,7 +191,7 @@ FORMATS = (
     Format(
         "DXF",
         read_dxf,
-        [("DXF as text, `.dxf`", "closed loops of `LINE`, `ARC` and `LWPOLYLINE`", "gives none")],
+        [("DXF as text, `.dxf`", "closed loops of `LINE`, `ARC` and `LWPOLYLINE`")],
         suffixes=(".dxf",),
         is_any_other=True,
     ),

@@ -225,7 +225,7 @@ FORMATS = (
     Format(
         "STEP",
         read_step,
-        [("STEP, `.step`, `.stp`", "the section of an extruded solid", "of the solid")],
+        [("STEP, `.step`, `.stp`", "the section of an extruded solid")],
         suffixes=(".step", ".stp"),
     ),
 )

@@ -111,7 +111,7 @@ def _text(data: bytes) -> str:
 
 FORMATS = (
     Format(
-        "RASP",
+        "RASP motor (.eng)",
         read_rasp,
         [
             (

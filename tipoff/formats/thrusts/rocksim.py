@@ -77,7 +77,7 @@ def _engines(data: bytes) -> list[_Engine]:
 
 FORMATS = (
     Format(
-        "RockSim",
+        "RockSim motor (.rse)",
         read_rocksim,
         [
             (

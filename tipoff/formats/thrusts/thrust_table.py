@@ -126,7 +126,7 @@ def _refuse(table: Written, why: str) -> NoReturn:
 
 FORMATS = (
     Format(
-        "table",
+        "table with a header such as time_s,force_N",
         read_thrust_table,
         [
             ("table of tipoff, `time_s,force_N`", "both columns", "in the header", "by the header"),

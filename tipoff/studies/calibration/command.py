@@ -81,8 +81,7 @@ def calibrate(
     payload.inertia.xy, .xz and .yz. contact.clearance_y and .clearance_z are clearances along one
     axis. tipoff run and tipoff ensemble read calibration.toml with --calibration.
 
-    A file is a table of text (CSV, Adams .tab, Abaqus .rpt, Exudyn), nodout, rbdout or binout of
-    LS-DYNA, or results of Adams (.res). It has time (from ignition, at any instants), velocity_x
+    A file is one of: {formats of curves}. It has time (from ignition, at any instants), velocity_x
     (inertial, along the rail), rate_x, rate_y and rate_z (inertial, in payload body axes). Units are
     in the header, rate_x \\[deg/s], in the line below it, or in --units. Other columns are ignored.
 

@@ -6,8 +6,7 @@ Writes curves.json, tables and a figure. The first file is the reference. Each f
   tipoff curves dyna=rbdout adams=adams.tab --body "dyna: 7" --units "dyna: time=ms, length=mm"
   tipoff curves dyna=binout0000 adams=run.res --condition phi15 --model compliant --model springs
 
-A file is a table of text (CSV, Adams .tab, Abaqus .rpt, Exudyn), nodout, rbdout or binout of LS-DYNA,
-or results of Adams (.res). It has time from ignition, rate_x, rate_y and rate_z; velocity_x may be
+A file is one of: {formats of curves}. It has time from ignition, rate_x, rate_y and rate_z; velocity_x may be
 absent. --columns names other columns, and --units gives units that the file does not state.
 """
 

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.faults import Fault, SceneError
-from tipoff.formats.logs.sensor_log import read_sensor_log
+from tipoff.formats.logs.reader import read_log
 from tipoff.studies.droptest import sampling
 from tipoff.studies.droptest import sheet as sheets
 from tipoff.studies.droptest.frozen import frozen
@@ -76,7 +76,7 @@ def read(path: str | Path) -> tuple[Sheet, Log]:
     coarser. Raises SceneError listing every fault of either."""
     sheet = sheets.load(path)
     source = Path(path).parent / sheet.file
-    values, notes = read_sensor_log(source, sheet.columns.names(), dict(sheet.units))
+    values, notes = read_log(source, sheet.columns.names(), dict(sheet.units))
     if len(values["time"]) < _FEWEST:
         given = counted(len(values["time"]), "sample")
         raise _fault(str(source), given, f"at least {_FEWEST}", "file")

@@ -44,8 +44,8 @@ def new(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="File of a thrust curve, instead of --thrust and --burn-time: a CSV with a header "
-            "such as time_s,force_N, or a motor (.eng, .rse). The scene refers to the file.",
+            help="File of a thrust curve, instead of --thrust and --burn-time. The scene refers to the "
+            "file.",
         ),
     ] = None,
     pads: Annotated[
@@ -84,6 +84,8 @@ def new(
       tipoff new my_rocket.toml --rocket --mass "6 kg"
       tipoff new measured.toml --thrust-curve firing.csv
       tipoff run --scene my_launcher.toml
+
+    The file of --thrust-curve is one of: {formats of thrusts}.
     """
     given: dict[str, str | None] = {
         "mass": mass,
