@@ -146,13 +146,13 @@ class _Command(TyperCommand):
     @help.setter
     def help(self, text: str) -> None:
         self._help = text
-        self.short_help = text.partition("\n\n")[0]  # in the list of all commands
 
 
 def _listed(title: str, commands: Iterable[Callable[..., None]]) -> None:
     for command in commands:
         text = flowed(command.__doc__ or "")
-        app.command(help=text, rich_help_panel=title, cls=_Command)(command)
+        first = text.partition("\n\n")[0]  # in the list of all commands
+        app.command(help=text, short_help=first, rich_help_panel=title, cls=_Command)(command)
 
 
 def add(title: str, entries: Iterable[Entry]) -> None:
