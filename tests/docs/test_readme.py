@@ -10,18 +10,18 @@ from tests.studies.agreement import made
 from tests.studies.agreement.made import ROW
 from tipoff.files import write_json
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.agreement.verdicts import Row
+from tipoff.studies.agreement.verdicts import JudgedCondition
 from validation.documents import readme
 
 TEXT = (pages.ROOT / "README.md").read_text(encoding="utf-8")
 
 
-def _row(judgement: str, curve: float = 0.001, settled: float = 0.01, **other) -> Row:
+def _row(judgement: str, curve: float = 0.001, settled: float = 0.01, **other) -> JudgedCondition:
     errors = {"rate_relative_l2": curve, "settled_rate_error_deg_s": settled}
     return replace(ROW, judgement=judgement, **errors, **other)
 
 
-def _written(folder, rows: list[Row]) -> str:
+def _written(folder, rows: list[JudgedCondition]) -> str:
     write_json(folder / "agreement.json", made.document(compliant=rows))
     return readme.headline(folder)
 

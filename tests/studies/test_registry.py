@@ -88,6 +88,7 @@ def entry(tmp_path, monkeypatch):
     for name, text in texts.items():
         (folder / f"{name}.py").write_text(text)
     monkeypatch.syspath_prepend(str(folder.parent))
+    importlib.invalidate_caches()
     yield importlib.import_module("heavier").QUESTION
     for name in [name for name in sys.modules if name.partition(".")[0] == "heavier"]:
         del sys.modules[name]
@@ -132,6 +133,15 @@ def test_a_new_study_has_a_command_a_result_and_a_section(entry, study, monkeypa
     report.run(study)
     shown = page.read_text()
     assert 'href="#heavier"' in shown and f"It weighs {mass:g} kg." in shown
+
+
+def test_a_study_without_a_page_shows_its_tables(entry, study, tmp_path):
+    (tmp_path / "code" / "heavier" / "page.py").unlink()
+    importlib.invalidate_caches()
+    said = call(entry, study, "--times", "3").stdout
+    assert "It weighs" not in said and "mass (kg)" in said and "place x, y, z (m)" in said
+    with pytest.raises(ImportError):
+        importlib.import_module("heavier.page")
 
 
 def test_the_report_makes_it_with_every(entry, study, monkeypatch):

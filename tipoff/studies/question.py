@@ -3,6 +3,8 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from importlib.util import find_spec
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tipoff.studies.commands.declared import command
@@ -71,8 +73,9 @@ class Question(Entry):
     a command in place of the one made from ``options``.
 
     The package has a module ``stage`` with ``run``, ``STAGE``, and ``stored`` if it replaces that
-    of ``STAGE``. It also has a module ``page`` with ``draw``, which makes the parts of the section
-    from a result, and ``terminal`` if the terminal shows other parts.
+    of ``STAGE``. It may have a module ``page`` with ``draw``, which makes the parts of the section
+    from a result, and ``terminal`` if the terminal shows other parts. Without it the tables of the
+    result are shown.
     """
 
     def __init__(
@@ -88,7 +91,12 @@ class Question(Entry):
         name = package.rpartition(".")[2]
 
         def modules() -> tuple[Any, Any]:
-            return import_module(f"{package}.stage"), import_module(f"{package}.page")
+            stage = import_module(f"{package}.stage")
+            if find_spec(f"{package}.page"):
+                return stage, import_module(f"{package}.page")
+            from tipoff.studies.render.document import tables_of
+
+            return stage, SimpleNamespace(draw=tables_of)
 
         def answer(request: Request, options: Any) -> Output:
             stage, page = modules()

@@ -18,7 +18,7 @@ from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.agreement.page import by_factor
 from tipoff.studies.agreement.stage import Agreement
-from tipoff.studies.agreement.verdicts import Row
+from tipoff.studies.agreement.verdicts import JudgedCondition
 from tipoff.studies.blind import stage as blind_study
 from tipoff.studies.blind.stage import Blind
 from tipoff.studies.convergence import stage as convergence
@@ -112,7 +112,7 @@ def _compared(folder: Path) -> Agreement:
     return compare.STAGE.read(read_json(folder / "agreement.json"))
 
 
-def _agreed(rows: Sequence[Row]) -> str:
+def _agreed(rows: Sequence[JudgedCondition]) -> str:
     """How many conditions are judged and agree, and the errors where pads touch."""
     curves = [row for row in rows if row.judged_as == verdicts.CURVE]
     judged = [row for row in curves if row.judgement != verdicts.CANNOT]
@@ -164,7 +164,7 @@ def section(folder: Path) -> str:
     return markdown(parts)
 
 
-def _pair(row: Row) -> str:
+def _pair(row: JudgedCondition) -> str:
     return (
         f"{percent(row.rate_relative_l2, '.2g')} / "
         f"{number(row.settled_rate_error_deg_s, '.2g', STEPS['deg/s'])}"
@@ -182,7 +182,7 @@ _COMPLIANT: tuple = (
 )
 
 
-def _of(rows: Sequence[Row]) -> Callable[[Row], str]:
+def _of(rows: Sequence[JudgedCondition]) -> Callable[[JudgedCondition], str]:
     """A cell with the errors of another model on the same condition."""
     own = {row.condition: _pair(row) for row in rows}
     return lambda row: own[row.condition]

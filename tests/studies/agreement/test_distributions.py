@@ -189,7 +189,7 @@ def test_a_miss_at_another_stiffness_is_a_miss_of_a_distribution_too():
     """Control: at the nominal stiffness the distribution has judged."""
     agreeing = row("phi15", judgement=verdicts.AS_DISTRIBUTION)
     for factor, expected in ((4.0, verdicts.MISSES), (1.0, verdicts.AS_DISTRIBUTION)):
-        item = interface.Row(
+        item = interface.AtStiffness(
             condition="phi15",
             factor=factor,
             interface_stiffness_n_m3=1e12,

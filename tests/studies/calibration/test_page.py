@@ -2,8 +2,6 @@
 
 from dataclasses import replace
 
-from pydantic_core import to_jsonable_python
-
 from tests.studies import kept
 from tipoff.studies.calibration import compliance, page, stage
 from tipoff.studies.render import document
@@ -27,8 +25,8 @@ def test_model_error_is_a_column_where_there_is_one(tmp_path):
 
 def test_the_compliance_stands_before_the_springs(tmp_path):
     both = {"compliance": COMPLIANCE, "springs": FIT}
-    text = document.terminal(page.of_models(to_jsonable_python(both), tmp_path))
+    text = document.terminal(page.of_models(both, tmp_path))
     assert text.index("(nm/N)") < text.index("contact.force")
     assert f"  {tmp_path / COMPLIANCE.file}" in text.splitlines()
-    without = to_jsonable_python({"compliance": compliance.Compliance()})
+    without = {"compliance": compliance.Compliance()}
     assert document.terminal(page.of_models(without, tmp_path)) == "no contact: no compliance"

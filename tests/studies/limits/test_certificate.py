@@ -14,7 +14,7 @@ from tipoff.studies.limits import certificate, page, stage
 from tipoff.studies.limits.certificate import Within
 from tipoff.studies.limits.constants import Margin
 from tipoff.studies.limits.options import Options
-from tipoff.studies.limits.results import Drawn, Limits, Row
+from tipoff.studies.limits.results import CertifiedFactor, Drawn, Limits
 from tipoff.studies.limits.search import Found
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
@@ -69,7 +69,7 @@ def test_both_models_agree_and_the_bound_is_above_the_closed_form(study, found):
 
 def shown(found: certificate.Certificate) -> str:
     """The text of a result with this certificate."""
-    row = Row(
+    row = CertifiedFactor(
         name="together", words="set", unit="1", most=1.0, nominal=Found("found", 1.0), advised=None
     )
     made = Limits(

@@ -11,7 +11,7 @@ from tests.studies.synthetic import COSTS, flight
 from tipoff.studies.nominal import page, spread
 from tipoff.studies.nominal.spread import Range
 from tipoff.studies.nominal.stage import STAGE, answer
-from tipoff.studies.runs.results import Row
+from tipoff.studies.runs.results import ConditionRun
 from tipoff.studies.runs.stage import row
 
 KEPT = kept.result(STAGE)
@@ -31,7 +31,7 @@ def ends(name) -> Range:
     return Range(low=low, high=10.4, low_bounds=(low, low + 0.4), high_bounds=(10.0, 10.4))
 
 
-def ended(*statuses) -> tuple[Row, ...]:
+def ended(*statuses) -> tuple[ConditionRun, ...]:
     """Runs of both models with these statuses."""
     return tuple(replace(one, status=status) for one, status in zip(KEPT.rows, statuses))
 

@@ -23,7 +23,7 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import document
 from tipoff.studies.runs import page
 from tipoff.studies.runs import stage as runs
-from tipoff.studies.runs.results import Row
+from tipoff.studies.runs.results import ConditionRun
 from tipoff.studies.single import single
 from tipoff.studies.sweeps import stage as sweeps
 from tipoff.studies.sweeps.options import Options
@@ -90,7 +90,7 @@ def test_a_single_run_answers_with_its_instant(tmp_path, capsys, lasts, at):
     if at == "exit":
         assert "by hand" not in printed and f"{TURNING * lasts:.3f}" in printed["burnt"]
         assert "in a vacuum" in printed["burnt"]
-    (row,) = TypeAdapter(tuple[Row, ...]).validate_python([made])
+    (row,) = TypeAdapter(tuple[ConditionRun, ...]).validate_python([made])
     shown = dict(zip(page.settled([row]).heads, page.settled([row]).rows[0]))
     assert shown["values"] == instant.where(at)
     assert shown["v_x (m/s)"] == pytest.approx(speed, rel=1e-5)

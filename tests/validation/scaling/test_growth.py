@@ -12,7 +12,7 @@ from tipoff import scenes
 from tipoff.files import read_json
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.scene_model import build
-from tipoff.studies.ablation.stage import Ablation, Row
+from tipoff.studies.ablation.stage import Ablation, VariantRun
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
 from validation.scaling import growth as scaling
@@ -201,13 +201,13 @@ def test_each_trend_has_its_size_and_the_exponent_of_the_method(monkeypatch, tmp
     assert len(trends.measured(bare, next(iter(bare.conditions)))) == 3
 
 
-def rows(times) -> tuple[Row, ...]:
+def rows(times) -> tuple[VariantRun, ...]:
     """Rows of the ablation study with these ``times`` (s) of the surrogate."""
     nothing = dict.fromkeys(
         ("ns_per_step", "time_ratio", "settled_rate_deg_s", "settled_rate_change_deg_s")
     )
     return tuple(
-        Row(
+        VariantRun(
             fidelity=fidelity,
             variant=variant,
             status="exited",

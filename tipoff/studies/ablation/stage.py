@@ -35,7 +35,7 @@ ADDED = {effect.key: effect.example for effect in EFFECTS if effect.example}
 
 
 @dataclass(frozen=True)
-class Row:
+class VariantRun:
     """One variant in one model."""
 
     fidelity: Annotated[str, Column("model")]
@@ -57,7 +57,7 @@ class Ablation:
     condition: str
     added: dict[str, dict]
     element_size_m: float
-    rows: tuple[Row, ...]
+    rows: tuple[VariantRun, ...]
     hardware: dict
 
 
@@ -158,10 +158,10 @@ def _rows(
     requested: list[Run],
     runs: list[Trajectory],
     times: list[float],
-) -> list[Row]:
+) -> list[VariantRun]:
     baseline = runs[0].outcome.rate
     return [
-        Row(
+        VariantRun(
             fidelity=fidelity,
             variant=line,
             status=run.status,

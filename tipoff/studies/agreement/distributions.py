@@ -18,7 +18,7 @@ from tipoff.studies.agreement import equivalence, neighbours, verdicts
 from tipoff.studies.agreement.candidates import Candidate
 from tipoff.studies.agreement.equivalence import Comparison
 from tipoff.studies.agreement.growth import Growth
-from tipoff.studies.agreement.verdicts import Row
+from tipoff.studies.agreement.verdicts import JudgedCondition
 from tipoff.workspace.announcing import announce
 from tipoff.workspace.progress import Board
 from tipoff.workspace.study import Study
@@ -80,7 +80,7 @@ class Distribution:
 
 
 def counts(
-    rows: Iterable[Row], growths: Iterable[Growth], undecided: Iterable[str], draws: int
+    rows: Iterable[JudgedCondition], growths: Iterable[Growth], undecided: Iterable[str], draws: int
 ) -> dict[str, int]:
     """Number of neighbours for each condition that is judged as a distribution: ``draws``, or a
     quarter if the reference is not converged but 1 um does not change it by more than the limit.
@@ -260,8 +260,11 @@ def _place(item: Comparison) -> str:
 
 
 def combined(
-    rows: Iterable[Row], found: Iterable[Distribution], wanted: Iterable[str], model: str
-) -> list[Row]:
+    rows: Iterable[JudgedCondition],
+    found: Iterable[Distribution],
+    wanted: Iterable[str],
+    model: str,
+) -> list[JudgedCondition]:
     """Rows of the agreement table of a ``model`` with the verdicts on distributions. A ``wanted``
     condition without a distribution cannot be judged."""
     own = {item.condition: item.models[model] for item in found}
@@ -269,7 +272,7 @@ def combined(
     return [_as_distribution(row, own) if row.condition in asked else row for row in rows]
 
 
-def _as_distribution(row: Row, own: Mapping[str, Verdict]) -> Row:
+def _as_distribution(row: JudgedCondition, own: Mapping[str, Verdict]) -> JudgedCondition:
     judgement, verdict = verdicts.CANNOT, f"{verdicts.CANNOT}: no clearance for neighbours"
     if (found := own.get(row.condition)) is not None:
         judgement, verdict = found.judgement, found.verdict

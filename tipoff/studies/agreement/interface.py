@@ -34,7 +34,7 @@ _NOT_JUDGED = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row(Judged):
+class AtStiffness(Judged):
     """Both models on one condition at one ``factor`` of the stiffness: changes of the largest
     settled rate relative to factor 1, metrics, verdict, and ``growth`` of 1 um in the reference,
     None if not computed."""
@@ -67,7 +67,7 @@ def _stiffened(study: Study, factor: float) -> dict[str, float]:
     return {} if factor == 1.0 else study.scene.contact.stiffened(factor)
 
 
-def rows(study: Study, request: Callable[..., Run], context: Context) -> list[Row]:
+def rows(study: Study, request: Callable[..., Run], context: Context) -> list[AtStiffness]:
     """Verdicts on the scene's refined conditions; none without contact. ``request`` makes runs of
     the surrogate on the compliance of the coarse mesh from condition, overrides and tag."""
     if study.scene.contact is None:
@@ -94,7 +94,7 @@ def rows(study: Study, request: Callable[..., Run], context: Context) -> list[Ro
     return [_regarding(row, grown.get((row.condition, row.factor))) for row in found]
 
 
-def _regarding(row: Row, grown: str | None) -> Row:
+def _regarding(row: AtStiffness, grown: str | None) -> AtStiffness:
     """A row with the computed growth, ``grown``. A miss is a verdict only if 1 um does not grow."""
     row = replace(row, growth=grown)
     if grown is None or (why := _NOT_JUDGED.get(grown)) is None:
@@ -104,13 +104,15 @@ def _regarding(row: Row, grown: str | None) -> Row:
     return replace(row, judgement=verdicts.CANNOT, verdict=said)
 
 
-def undecided(found: Sequence[Row]) -> list[str]:
+def undecided(found: Sequence[AtStiffness]) -> list[str]:
     """Conditions that no single run can judge at the nominal stiffness: their reference is, or may
     be, chaotic."""
     return [item.condition for item in found if item.factor == 1.0 and item.growth in _NOT_JUDGED]
 
 
-def combined(agreement: Iterable[verdicts.Row], found: Sequence[Row]) -> list[verdicts.Row]:
+def combined(
+    agreement: Iterable[verdicts.JudgedCondition], found: Sequence[AtStiffness]
+) -> list[verdicts.JudgedCondition]:
     """Rows of the agreement table with the verdicts at each factor under ``interface``. A condition
     agrees if it agrees at every factor at which it is judged. It cannot be judged if it misses at
     no factor and the growth of 1 um is not known at one factor."""
@@ -120,7 +122,7 @@ def combined(agreement: Iterable[verdicts.Row], found: Sequence[Row]) -> list[ve
     ]
 
 
-def _combined(row: verdicts.Row, own: list[Row]) -> verdicts.Row:
+def _combined(row: verdicts.JudgedCondition, own: list[AtStiffness]) -> verdicts.JudgedCondition:
     as_distribution = row.judgement == verdicts.AS_DISTRIBUTION
     # the distribution judges the nominal stiffness
     further = [item for item in own if not (as_distribution and item.factor == 1.0)]
@@ -140,14 +142,14 @@ def _combined(row: verdicts.Row, own: list[Row]) -> verdicts.Row:
 
 def _row(
     study: Study, place: Place, pairs: dict[Place, tuple[Trajectory, Trajectory]], context: Context
-) -> Row:
+) -> AtStiffness:
     assert study.scene.contact is not None
     name, factor = place
     (reference, surrogate), nominal = pairs[place], pairs[name, 1.0]
     difference = compare(reference, surrogate)
     touches = bool(reference.pad_force.any())
     _, judgement, verdict = verdicts.single(name, difference, context, touches)
-    return Row(
+    return AtStiffness(
         condition=name,
         factor=factor,
         interface_stiffness_n_m3=factor * study.scene.contact.series_stiffness(),

@@ -15,7 +15,7 @@ from tipoff.studies.agreement import distributions, growth, refinement, verdicts
 from tipoff.studies.agreement.candidates import Candidate, on_coarse
 from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.agreement.growth import Growth
-from tipoff.studies.agreement.verdicts import Context, Refinement, Row, Spread
+from tipoff.studies.agreement.verdicts import Context, JudgedCondition, Refinement, Spread
 from tipoff.workspace.run import Run, with_modes_of
 from tipoff.workspace.study import Study, require_success
 
@@ -28,7 +28,7 @@ class Curves(NamedTuple):
     reference, and ``refinements`` of the reference."""
 
     reference: dict[str, Trajectory]
-    rows: dict[str, list[Row]]
+    rows: dict[str, list[JudgedCondition]]
     contexts: dict[str, Context]
     floors: list[Spread]
     refinements: list[Refinement]
@@ -38,7 +38,7 @@ class Judged(NamedTuple):
     """``rows`` of the agreement table by candidate, each judged as a curve or as a distribution;
     ``growths`` of 1 um; ``distributions``."""
 
-    rows: dict[str, list[Row]]
+    rows: dict[str, list[JudgedCondition]]
     growths: list[Growth]
     distributions: list[Distribution]
 
@@ -66,7 +66,7 @@ def as_curves(study: Study, compared: Sequence[Candidate], purpose: str) -> Curv
 
 def _rows(
     study: Study, candidate: Candidate, reference: dict[str, Trajectory], context: Context
-) -> list[Row]:
+) -> list[JudgedCondition]:
     """Agreement of one surrogate on every condition."""
     wanted = {name: candidate.request(study, name) for name in study.conditions}
     found = dict(zip(wanted, study.store.fill(candidate.title, list(wanted.values()))))
@@ -115,7 +115,7 @@ def floors(study: Study, model: str, request: Callable[..., Run]) -> list[Spread
     ]
 
 
-def _growths(study: Study, compliant: Candidate, rows: Iterable[Row]) -> list[Growth]:
+def _growths(study: Study, compliant: Candidate, rows: Iterable[JudgedCondition]) -> list[Growth]:
     """Growth of 1 um of clearance in both models, on the conditions of the floor and on conditions
     whose reference is not converged in the ``rows`` of the agreement table: the reason may be
     chaos."""

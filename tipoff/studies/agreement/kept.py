@@ -8,7 +8,7 @@ from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.names import NOMINAL
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.agreement.verdicts import Row
+from tipoff.studies.agreement.verdicts import JudgedCondition
 from tipoff.workspace.errors import StudyError
 from tipoff.workspace.study import Study
 from tipoff.workspace.words import counted
@@ -25,7 +25,7 @@ def _stored(study: Study) -> "Agreement | None":
 
 def _rows(
     found: "Agreement | None", model: str, calibrated: bool = False, modes: int | str = AUTO
-) -> Sequence[Row]:
+) -> Sequence[JudgedCondition]:
     """Rows of ``model`` with its options in the agreement table; none without one."""
     if found is None or model == FINITE_ELEMENTS or (calibrated and model == COMPLIANT):
         return ()
@@ -121,7 +121,7 @@ def _own_constants(study: Study) -> dict | None:
         return None
 
 
-def _others(rows: Sequence[Row]) -> str:
+def _others(rows: Sequence[JudgedCondition]) -> str:
     """How many conditions agree as distributions, and which miss; empty without distributions."""
     alike = [row for row in rows if row.judged_as == verdicts.DISTRIBUTION]
     agree = sum(row.judgement == verdicts.AS_DISTRIBUTION for row in alike)
@@ -131,7 +131,7 @@ def _others(rows: Sequence[Row]) -> str:
     )
 
 
-def _one(row: Row) -> str:
+def _one(row: JudgedCondition) -> str:
     if row.settled_rate_error_deg_s is None or row.rate_relative_l2 is None:
         return "unknown: the reference or this model did not settle"
     off = (

@@ -36,7 +36,7 @@ class Scene:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class OtherRail:
     """One model over the conditions with contact of a scene; largest errors over conditions judged
     as curves, None without such a condition."""
 
@@ -103,15 +103,15 @@ def table(found: Sequence[Scene], *notes: str, title: str = "") -> Table:
             ("compliant", scene.agreement.compliant),
         )
     ]
-    return Table.of_records(rows, kind=Row, notes=notes, title=title)
+    return Table.of_records(rows, kind=OtherRail, notes=notes, title=title)
 
 
-def _row(scene: Scene, model: str, rows: Sequence[verdicts.Row]) -> Row:
+def _row(scene: Scene, model: str, rows: Sequence[verdicts.JudgedCondition]) -> OtherRail:
     touched = [row for row in rows if row.touches]
     judged = [row for row in touched if row.judgement != verdicts.CANNOT]
     curves = [row for row in judged if row.is_judged_as_curve]
     words = [row.judgement for row in judged]
-    return Row(
+    return OtherRail(
         scene=scene.name,
         element_size_m=scene.agreement.element_size_m,
         model=model,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tipoff.comparison.metrics import CHANNELS
 from tipoff.studies.agreement import distribution_page, interface, stage, verdicts
 from tipoff.studies.agreement.stage import Agreement, Simpler
-from tipoff.studies.agreement.verdicts import Row
+from tipoff.studies.agreement.verdicts import JudgedCondition
 from tipoff.studies.render.column import of_record
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Column, Table, percent
@@ -24,7 +24,7 @@ def starred(shown: str, measured_here: bool) -> str:
     return shown if measured_here else f"{shown}*"
 
 
-def _to_floor(name: str) -> Callable[[Row], Measured]:
+def _to_floor(name: str) -> Callable[[JudgedCondition], Measured]:
     """A cell with an error, rounded to the floor."""
     return lambda row: Measured(getattr(row, name), row.floor_deg_s, apart=True)
 
@@ -94,7 +94,7 @@ def terminal(found: Agreement) -> list[Part]:
         found.compliant,
         *("condition", "rate_relative_l2", "settled_rate_error_deg_s"),
         *("reference_uncertainty_deg_s", "judged_as", "verdict"),
-        kind=Row,
+        kind=JudgedCondition,
         title=f"Compliant contact: {summary(found.compliant)}.",
         notes=(under["words"],) if under else (),
     )
@@ -123,17 +123,17 @@ def _notes(found: Agreement) -> tuple[str, ...]:
     )
 
 
-def judged(rows: Sequence[Row], name: str, notes: tuple[str, ...] = ()) -> Table:
+def judged(rows: Sequence[JudgedCondition], name: str, notes: tuple[str, ...] = ()) -> Table:
     """A table of agreement rows: good, bad, or not judged."""
     kinds = [distribution_page.kind(row.judgement) for row in rows]
     return Table.of_records(
-        rows, *_COLUMNS, kind=Row, notes=notes, name=name, kinds=kinds, dense=True
+        rows, *_COLUMNS, kind=JudgedCondition, notes=notes, name=name, kinds=kinds, dense=True
     )
 
 
 def _simpler(found: Agreement) -> Fold:
     """Errors with parts of the rail compliance."""
-    lines: dict[str, list[Row | Simpler]] = {}
+    lines: dict[str, list[JudgedCondition | Simpler]] = {}
     for item in found.simpler:
         lines.setdefault(item.walls, []).append(item)
     lines["all"] = list(found.compliant)
@@ -150,7 +150,7 @@ def _simpler(found: Agreement) -> Fold:
     )
 
 
-def at_factors(found: Sequence[interface.Row]) -> list[Part]:
+def at_factors(found: Sequence[interface.AtStiffness]) -> list[Part]:
     """Both models at other values of the interface stiffness; empty without contact."""
     if not found:
         return []
@@ -161,7 +161,7 @@ def at_factors(found: Sequence[interface.Row]) -> list[Part]:
         "changes both models. A condition agrees if it agrees at every factor at which it is "
         "judged."
     )
-    names = [name for name in of_record(interface.Row) if name != "verdict"]
+    names = [name for name in of_record(interface.AtStiffness) if name != "verdict"]
     table = Table.of_records(
         found, *names, "verdict", notes=(note,), name="interface", kinds=kinds, dense=True
     )
@@ -171,7 +171,7 @@ def at_factors(found: Sequence[interface.Row]) -> list[Part]:
     ]
 
 
-def by_factor(found: Sequence[interface.Row]) -> list[Part]:
+def by_factor(found: Sequence[interface.AtStiffness]) -> list[Part]:
     """The same with a line for each condition; empty if the models were not compared."""
     if not found:
         return []
@@ -194,7 +194,7 @@ def by_factor(found: Sequence[interface.Row]) -> list[Part]:
     return [Table(heads, rows, title=title)]
 
 
-def stiffnesses(found: Sequence[interface.Row]) -> str:
+def stiffnesses(found: Sequence[interface.AtStiffness]) -> str:
     """How many of the judged conditions agree at each factor."""
     judged_rows = [item for item in found if item.judgement != verdicts.CANNOT]
     if not judged_rows:
@@ -210,18 +210,18 @@ def stiffnesses(found: Sequence[interface.Row]) -> str:
     return ", ".join(parts)
 
 
-def _errors(row: Row | Simpler | interface.Row) -> str:
+def _errors(row: JudgedCondition | Simpler | interface.AtStiffness) -> str:
     error = number(row.settled_rate_error_deg_s, ".2g", LEAST)
     return f"{percent(row.rate_relative_l2, '.2g')}; {error}"
 
 
-def summary(rows: Sequence[Row], words: str = "") -> str:
+def summary(rows: Sequence[JudgedCondition], words: str = "") -> str:
     """How many of the ``words`` conditions agree, as curves and as distributions, cannot be judged, and
     miss."""
     return " ".join(counts(rows, words))
 
 
-def counts(rows: Sequence[Row], words: str = "") -> tuple[str, str]:
+def counts(rows: Sequence[JudgedCondition], words: str = "") -> tuple[str, str]:
     """The same in two parts: how many of how many, and the rest of the sentence."""
     count = Counter(row.judgement for row in rows)
     free = sum(row.judgement == verdicts.AGREES and not row.touches for row in rows)
@@ -240,7 +240,7 @@ def counts(rows: Sequence[Row], words: str = "") -> tuple[str, str]:
     )
 
 
-def _further(rows: Sequence[Row]) -> Fold:
+def _further(rows: Sequence[JudgedCondition]) -> Fold:
     """Lateral velocity, direction, and the ratings of each channel."""
     columns: list[Any] = [
         "condition",
@@ -264,7 +264,7 @@ def _further(rows: Sequence[Row]) -> Fold:
     note = "Lateral velocity and direction: surrogate minus reference."
     return Fold(
         "Lateral velocity, direction, and ratings of each channel",
-        [Table.of_records(rows, *columns, kind=Row, notes=(note,), dense=True)],
+        [Table.of_records(rows, *columns, kind=JudgedCondition, notes=(note,), dense=True)],
     )
 
 

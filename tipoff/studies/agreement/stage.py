@@ -14,7 +14,7 @@ from tipoff.studies.agreement.candidates import Candidate, candidates, on_coarse
 from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.agreement.options import Options
-from tipoff.studies.agreement.verdicts import Row
+from tipoff.studies.agreement.verdicts import JudgedCondition
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace.progress import Board
 from tipoff.workspace.stage import Made, Stage
@@ -53,11 +53,11 @@ class Agreement:
     compliance; other values of the ``interface`` stiffness; ``speedup`` of calibrated springs and of
     compliant contact."""
 
-    uncalibrated: tuple[Row, ...]
-    fitted: tuple[Row, ...]
-    held_out: tuple[Row, ...]
-    compliant: tuple[Row, ...]
-    modal: tuple[Row, ...]
+    uncalibrated: tuple[JudgedCondition, ...]
+    fitted: tuple[JudgedCondition, ...]
+    held_out: tuple[JudgedCondition, ...]
+    compliant: tuple[JudgedCondition, ...]
+    modal: tuple[JudgedCondition, ...]
     rail_compliance: dict[str, Any] | None
     rail_modes: int
     gates: verdicts.Gates
@@ -69,12 +69,12 @@ class Agreement:
     growth: tuple[Growth, ...]
     distributions: tuple[Distribution, ...]
     simpler: tuple[Simpler, ...]
-    interface: tuple[interface.Row, ...]
+    interface: tuple[interface.AtStiffness, ...]
     speedup: Speedup
     speedup_compliant: Speedup
 
     @property
-    def calibrated(self) -> tuple[Row, ...]:
+    def calibrated(self) -> tuple[JudgedCondition, ...]:
         """Rows of calibrated springs, fitted ones first."""
         return self.fitted + self.held_out
 

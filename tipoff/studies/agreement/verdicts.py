@@ -88,7 +88,7 @@ class AtFactor:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row(Difference, Judged):
+class JudgedCondition(Difference, Judged):
     """One line of the agreement table: the metrics of one surrogate on one condition, None if a run
     did not settle. ``_measured_here``: False for the largest value of other conditions.
     ``touches``: whether a pad of the reference touches a rail. ``interface``: verdicts at other
@@ -242,14 +242,14 @@ def _own(spreads: list[_Measured], condition: str) -> tuple[list[_Measured], boo
 
 def row(
     condition: str, role: str, reference: Trajectory, surrogate: Trajectory, context: Context
-) -> Row:
+) -> JudgedCondition:
     """One line of the agreement table."""
     difference = compare(reference, surrogate)
     floor_deg_s, floor_l2, floor_measured = context.floor(condition)
     uncertainty, causes, uncertainty_measured = context.uncertainty(condition)
     touches = bool(reference.pad_force.any())
     gates, judgement, verdict = single(condition, difference, context, touches)
-    return Row(
+    return JudgedCondition(
         **vars(difference),
         condition=condition,
         role=role,

@@ -17,7 +17,7 @@ from tipoff.studies.agreement import judging, verdicts
 from tipoff.studies.agreement.candidates import calibrated, compliant
 from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.agreement.growth import Growth
-from tipoff.studies.agreement.verdicts import Gates, Row
+from tipoff.studies.agreement.verdicts import Gates, JudgedCondition
 from tipoff.studies.blind.options import CASES, Options
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace.stage import Made, Stage
@@ -40,8 +40,8 @@ class Blind:
     converged_deg_s: float
     clearance_change_m: float
     conditions: dict[str, dict[str, float]]
-    calibrated: tuple[Row, ...]
-    compliant: tuple[Row, ...]
+    calibrated: tuple[JudgedCondition, ...]
+    compliant: tuple[JudgedCondition, ...]
     growth: tuple[Growth, ...]
     distributions: tuple[Distribution, ...]
 

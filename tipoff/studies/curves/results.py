@@ -10,7 +10,7 @@ Rates = tuple[float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class CurveDifference:
     """One curve; the differences are from the reference, None in its own row. Magnitude and phase
     are those of Sprague and Geers."""
 
@@ -54,7 +54,7 @@ class Compared:
     asked: Options
     condition: str | None
     reference: str
-    rows: tuple[Row, ...]
+    rows: tuple[CurveDifference, ...]
     ratings: tuple[Channel, ...]
     drawn: dict[str, Drawn]
     failed: tuple[str, ...] = ()

@@ -17,7 +17,7 @@ from tipoff.studies.calibration.files import constants
 from tipoff.studies.commands.running import quantity
 from tipoff.studies.curves import page
 from tipoff.studies.curves.options import Options
-from tipoff.studies.curves.results import Channel, Compared, Drawn, Row
+from tipoff.studies.curves.results import Channel, Compared, CurveDifference, Drawn
 from tipoff.studies.render.document import with_figures
 from tipoff.workspace import models as known
 from tipoff.workspace.run import Run
@@ -26,7 +26,7 @@ from tipoff.workspace.study import Study, require_success
 
 NAME = "curves"
 _DRAWN = 300  # samples of a curve in the result
-_DIFFERENCES = (  # fields of Row that are fields of a Difference
+_DIFFERENCES = (  # fields of CurveDifference that are fields of a Difference
     "settled_rate_error_deg_s",
     "rate_relative_l2",
     "velocity_relative_l2",
@@ -172,12 +172,12 @@ def compared(scene: str, options: Options, found: dict[str, Curves]) -> Compared
     )
 
 
-def _row(name: str, curves: Curves, difference: metrics.Difference | None) -> Row:
+def _row(name: str, curves: Curves, difference: metrics.Difference | None) -> CurveDifference:
     x, y, z = np.degrees(curves.settled).tolist()
     found: dict[str, Any] = {}
     if difference is not None:
         found = {key: getattr(difference, key) for key in _DIFFERENCES}
-    return Row(
+    return CurveDifference(
         curve=name, settled_rate_deg_s=(x, y, z), settled_from_s=curves.window_start, **found
     )
 

@@ -6,7 +6,7 @@ from operator import attrgetter
 from typing import Any
 
 from tipoff.studies.limits.certificate import Certificate, Stratum
-from tipoff.studies.limits.results import Advised, Limits, Map, Row
+from tipoff.studies.limits.results import Advised, CertifiedFactor, Limits, Map
 from tipoff.studies.limits.search import ALL, FOUND, LOST, NONE, SMALL, Found
 from tipoff.studies.limits.within import TOGETHER
 from tipoff.studies.populations import exceedance, population
@@ -42,7 +42,7 @@ _REASONS = {
     NONE: "none, a limit is exceeded even at zero",
     LOST: "none, the model error exceeds a limit",
 }
-_COLUMNS: tuple[tuple[str, Callable[[Row], Any]], ...] = (
+_COLUMNS: tuple[tuple[str, Callable[[CertifiedFactor], Any]], ...] = (
     ("tolerance of", lambda row: row.words + _unit(row.unit, " ({})")),
     ("largest certified", lambda row: value(row.nominal)),
     ("the paper advises", lambda row: row.advised and row.advised.tolerance),
@@ -176,7 +176,7 @@ def _kept(advised: Advised) -> str:
     return span(100.0 * (1.0 - advised.high), 100.0 * (1.0 - advised.low), ".4g") + " %"
 
 
-def _odd(row: Row) -> list[str]:
+def _odd(row: CertifiedFactor) -> list[str]:
     """The tolerances between which the number of cases above a limit does not grow."""
     unit, lines = _unit(row.unit), []
     if row.nominal.again:
@@ -223,7 +223,7 @@ def _beside(found: Limits) -> list[Part]:
     return [Fold("Every quantity at the certified tolerances", [table])]
 
 
-def _panel(row: Row, found: Limits) -> Panel:
+def _panel(row: CertifiedFactor, found: Limits) -> Panel:
     """Share above a limit over the tolerance. A share of zero is not drawn, since the axis is
     logarithmic; its upper bound is."""
     trials = [trial for trial in row.nominal.trials if trial.tolerance > 0.0]

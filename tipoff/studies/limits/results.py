@@ -30,7 +30,7 @@ class Magnitude(Named, Quantile):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class CertifiedFactor:
     """A factor with its certified tolerances. None if there is nothing to search."""
 
     name: str
@@ -84,7 +84,7 @@ class Limits(Answering):
     allowed: int  # how many of the cases may be above a limit
     constants: Drawn
     margin: Margin
-    rows: tuple[Row, ...]  # of each factor, and of all together
+    rows: tuple[CertifiedFactor, ...]  # of each factor, and of all together
     map: Map | None  # None without a certified pair
     # None if not requested, or if no tolerance of the whole set is certified
     certificate: Certificate | None

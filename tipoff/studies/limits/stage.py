@@ -25,7 +25,15 @@ from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.studies.limits import certificate, constants, search, within
 from tipoff.studies.limits.certificate import Certificate
 from tipoff.studies.limits.options import Options
-from tipoff.studies.limits.results import Advised, Drawn, Limits, Magnitude, Map, Pair, Row
+from tipoff.studies.limits.results import (
+    Advised,
+    CertifiedFactor,
+    Drawn,
+    Limits,
+    Magnitude,
+    Map,
+    Pair,
+)
 from tipoff.studies.limits.search import Found
 from tipoff.studies.limits.within import ADVISED, SETS, TOGETHER, Cases, Factor
 from tipoff.studies.populations import answers, exceedance, population, spread
@@ -229,14 +237,14 @@ class Search:
             return Found(search.LOST)
         return search.near(self._above(cases, limits), self.allowed, start, most)
 
-    def _row(self, name: str, tolerances: dict[str, float], found: Found) -> Row:
+    def _row(self, name: str, tolerances: dict[str, float], found: Found) -> CertifiedFactor:
         # The paper advises one of the sets; it advises no multiple of its Table 3.
         advised = 1.0 / _REACH if self.options.tolerances == "advised" else None
         factor = self.factors.get(name) or Factor(
             "all together, multiple of the set", "1", 1.0 / _REACH, 1.0, advised
         )
         size = factor.most / factor.scale
-        row = Row(
+        row = CertifiedFactor(
             name=name,
             words=factor.words,
             unit=factor.unit,

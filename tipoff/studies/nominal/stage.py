@@ -12,7 +12,7 @@ from tipoff.scenes.names import NOMINAL
 from tipoff.studies.nominal import spread
 from tipoff.studies.nominal.spread import Spread
 from tipoff.studies.runs import stage as runs
-from tipoff.studies.runs.results import Row
+from tipoff.studies.runs.results import ConditionRun
 from tipoff.workspace.run import Run
 from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
@@ -36,7 +36,7 @@ class Nominal:
     there; ``spread`` under random errors, None if the scene states none; ``failed``, a line for each run
     without success."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[ConditionRun, ...]
     at: str
     at_why: str
     answer: dict[str, dict[str, float] | None]
@@ -87,7 +87,7 @@ def _inputs(study: Study, _: None) -> list:
 STAGE = Stage(NAME, __name__, inputs=_inputs, result=Nominal)
 
 
-def answer(row: Row, at: str) -> dict[str, float] | None:
+def answer(row: ConditionRun, at: str) -> dict[str, float] | None:
     """Values by the names of ``spread.QUANTITIES`` from the row of a run at an instant; None if it has
     none there."""
     seen = row.at_exit if at == instant.EXIT else row.settled

@@ -3,15 +3,16 @@ and for the terminal."""
 
 import base64
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from markupsafe import Markup
 
 from tipoff.studies.render import chart as charts
 from tipoff.studies.render import table as tables
 from tipoff.studies.render.chart import Chart, Picture
+from tipoff.studies.render.column import of_record
 from tipoff.studies.render.table import Table, inline
 from tipoff.workspace.attempt import attempt
 
@@ -166,6 +167,17 @@ def _image(image: Image) -> Markup:
 def _data(path: Path) -> str:
     """The data address with the content of an image file."""
     return f"data:{_MIME[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode()}"
+
+
+def tables_of(found: Any) -> list[Part]:
+    """A table of each tuple of records that declare columns, in the result ``found`` of a stage."""
+    values = (getattr(found, field.name) for field in fields(found))
+    groups = (value for value in values if isinstance(value, tuple) and value)
+    return [
+        Table.of_records(group)
+        for group in groups
+        if is_dataclass(group[0]) and of_record(type(group[0]))
+    ]
 
 
 _Result = TypeVar("_Result")

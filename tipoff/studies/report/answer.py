@@ -34,7 +34,7 @@ from tipoff.studies.render.uncertain import (
     uncertain,
 )
 from tipoff.studies.report import drawing, inputs
-from tipoff.studies.runs.results import Row, Settled, roll, transverse
+from tipoff.studies.runs.results import ConditionRun, Settled, roll, transverse
 from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def draw(page: "Page") -> list[Part]:
 
 
 def above(
-    row: Row, limits: Sequence[Limit], at: str, spread: Distribution | None = None
+    row: ConditionRun, limits: Sequence[Limit], at: str, spread: Distribution | None = None
 ) -> list[str] | None:
     """The axes on which a rate of a condition at an instant is above a limit; of the settled rates of any
     neighbour, if a ``spread`` replaces them. None without a rate."""
@@ -110,7 +110,7 @@ def above(
     ]
 
 
-def _instant(rows: Sequence[Row]) -> Instant:
+def _instant(rows: Sequence[ConditionRun]) -> Instant:
     """The instant of the limits: at the exit if any payload gets much of its impulse after it."""
     shares = [row.impulse_after_exit for row in rows if row.impulse_after_exit is not None]
     return chosen(None, max(shares, default=None))
@@ -123,7 +123,7 @@ def _spreads(agreement: Agreement | None) -> dict[str, Distribution]:
     return {item.condition: item for item in found if len(item.settled_deg_s) > 1}
 
 
-def _speed(page: "Page", rows: Sequence[Row]) -> list[tuple[str, str]]:
+def _speed(page: "Page", rows: Sequence[ConditionRun]) -> list[tuple[str, str]]:
     """v_x over all conditions, with its uncertainty where the error of the reference was studied."""
     speeds = [row.settled.velocity_m_s[0] for row in rows if row.settled]
     if not speeds:
@@ -143,7 +143,9 @@ def _speed(page: "Page", rows: Sequence[Row]) -> list[tuple[str, str]]:
 
 
 def _largest(
-    rows: Sequence[Row], compared: dict[str, verdicts.Row], spreads: dict[str, Distribution]
+    rows: Sequence[ConditionRun],
+    compared: dict[str, verdicts.JudgedCondition],
+    spreads: dict[str, Distribution],
 ) -> list[tuple[str, str]]:
     settled = {row.condition: row.settled for row in rows if row.settled}
     if not settled:
@@ -181,12 +183,12 @@ def _largest(
     return [*figures, (number(off, ".2g", LEAST), f"largest angle off axis (deg): {name}")]
 
 
-def _uncertainty(row: verdicts.Row | None) -> float | None:
+def _uncertainty(row: verdicts.JudgedCondition | None) -> float | None:
     return None if row is None else row.reference_uncertainty_deg_s
 
 
 def _limits(
-    rows: Sequence[Row], limits: Sequence[Limit], spreads: dict[str, Distribution]
+    rows: Sequence[ConditionRun], limits: Sequence[Limit], spreads: dict[str, Distribution]
 ) -> list[tuple[str, str]]:
     if not limits:
         return []
@@ -221,8 +223,8 @@ def _models(page: "Page", agreement: Agreement | None) -> list[tuple[str, str]]:
 
 def _conditions(
     page: "Page",
-    rows: Sequence[Row],
-    compared: dict[str, verdicts.Row],
+    rows: Sequence[ConditionRun],
+    compared: dict[str, verdicts.JudgedCondition],
     spreads: dict[str, Distribution],
 ) -> Table:
     at = _instant(rows).at
@@ -277,24 +279,24 @@ def _rates(settled: Settled, uncertainty: float | None, spread: Distribution | N
     ]
 
 
-def _burns_on(rows: Sequence[Row]) -> bool:
+def _burns_on(rows: Sequence[ConditionRun]) -> bool:
     """Whether any payload leaves its rail under thrust."""
     return any((row.impulse_after_exit or 0.0) > _BURNT for row in rows)
 
 
-def _at_exit(row: Row) -> list:
+def _at_exit(row: ConditionRun) -> list:
     """Roll and transverse rate at exit, and the share of the impulse after it."""
     rate = row.at_exit and row.at_exit.rate_deg_s
     shown = f"{uncertain(roll(rate))}, {uncertain(transverse(rate))}" if rate else None
     return [shown or row.no_exit_values or None, row.impulse_after_exit]
 
 
-def _by_hand(rows: Sequence[Row]) -> bool:
+def _by_hand(rows: Sequence[ConditionRun]) -> bool:
     """Whether any of the rates can be computed by hand."""
     return any(row.by_hand for row in rows)
 
 
-def _hand(row: Row) -> str | None:
+def _hand(row: ConditionRun) -> str | None:
     """Roll and transverse rate from moment impulse over inertia, if at most one pad touches."""
     if row.by_hand is None:
         return None
@@ -308,7 +310,7 @@ def _words(over: list[str] | None) -> str:
     return f"✗ {', '.join(over)}".replace(" ", "\u00a0") if over else "✓ pass"
 
 
-def _kind(row: verdicts.Row | None) -> str:
+def _kind(row: verdicts.JudgedCondition | None) -> str:
     return "" if row is None else distribution_page.kind(row.judgement)
 
 
@@ -342,7 +344,7 @@ def _readable(value: Any) -> str:
 _LONG = re.compile(r"\d+\.\d{5,}(?![\d.eE])")
 
 
-def _numerics(compared: dict[str, verdicts.Row]) -> list[str]:
+def _numerics(compared: dict[str, verdicts.JudgedCondition]) -> list[str]:
     known = {
         name: value for name, row in compared.items() if (value := _uncertainty(row)) is not None
     }
@@ -357,7 +359,7 @@ def _numerics(compared: dict[str, verdicts.Row]) -> list[str]:
     ]
 
 
-def _model(compared: dict[str, verdicts.Row]) -> list[str]:
+def _model(compared: dict[str, verdicts.JudgedCondition]) -> list[str]:
     errors = [
         row.settled_rate_error_deg_s
         for row in compared.values()

@@ -18,7 +18,7 @@ from tipoff.studies.render.document import Caption, Missing, Notice, Part
 from tipoff.studies.render.palette import themed
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.figures import Runs
-from tipoff.studies.runs.results import Row
+from tipoff.studies.runs.results import ConditionRun
 from tipoff.workspace.stage import Made, Stage
 
 _Result = TypeVar("_Result")
@@ -90,7 +90,7 @@ class Page:
         """The parts of a document as HTML."""
         return document.html(parts, self.figure)
 
-    def rows(self) -> dict[str, Sequence[Row]]:
+    def rows(self) -> dict[str, Sequence[ConditionRun]]:
         """Conditions of both models."""
         return {
             name: found.conditions if (found := self.result(stage)) else ()

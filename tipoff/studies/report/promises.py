@@ -10,7 +10,7 @@ from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.stage import Agreement
 from tipoff.studies.calibration.stage import Fit
 from tipoff.studies.render.table import Table, number
-from tipoff.studies.runs.results import Row
+from tipoff.studies.runs.results import ConditionRun
 from tipoff.workspace.timing import Speedup
 from tipoff.workspace.words import counted
 
@@ -51,7 +51,7 @@ _NOT_MEASURED = (
 
 
 def promises(
-    rows: Mapping[str, Sequence[Row]],
+    rows: Mapping[str, Sequence[ConditionRun]],
     agreement: Agreement | None = None,
     calibration: Fit | None = None,
 ) -> list[Promise]:
@@ -75,7 +75,7 @@ def promises(
     ]
 
 
-def _check(name: str, rows: Sequence[Row], limit: float, words: str) -> Promise:
+def _check(name: str, rows: Sequence[ConditionRun], limit: float, words: str) -> Promise:
     worst, where = _worst(rows, name)
     silent = [row.condition for row in rows if row.checks.get(name) is None]
     said = [] if worst is None else [f"{number(worst, '.2g')} ({where})"]
@@ -88,7 +88,7 @@ def _check(name: str, rows: Sequence[Row], limit: float, words: str) -> Promise:
     )
 
 
-def _worst(rows: Sequence[Row], name: str) -> tuple[float | None, str]:
+def _worst(rows: Sequence[ConditionRun], name: str) -> tuple[float | None, str]:
     measured = [
         (row.checks[name], row.condition) for row in rows if row.checks.get(name) is not None
     ]
@@ -96,7 +96,7 @@ def _worst(rows: Sequence[Row], name: str) -> tuple[float | None, str]:
     return max(measured, key=lambda pair: (pair[0] != pair[0], pair)) if measured else (None, "")
 
 
-def _step(rows: Sequence[Row]) -> Promise | None:
+def _step(rows: Sequence[ConditionRun]) -> Promise | None:
     measured = [
         (row.cost["dt_s"] / row.cost["dt_limit_s"], row)
         for row in rows
@@ -114,7 +114,7 @@ def _step(rows: Sequence[Row]) -> Promise | None:
     )
 
 
-def _surrogate_step(rows: Sequence[Row]) -> Promise | None:
+def _surrogate_step(rows: Sequence[ConditionRun]) -> Promise | None:
     measured = [(row.cost["limit_used"], row.condition) for row in rows if "limit_used" in row.cost]
     if not measured:
         return None
@@ -127,7 +127,7 @@ def _surrogate_step(rows: Sequence[Row]) -> Promise | None:
     )
 
 
-def _friction(rows: Sequence[Row]) -> Promise | None:
+def _friction(rows: Sequence[ConditionRun]) -> Promise | None:
     worst, where = _worst(rows, "friction_power_max")
     return (
         None
@@ -141,7 +141,7 @@ def _friction(rows: Sequence[Row]) -> Promise | None:
     )
 
 
-def _finite(rows: Mapping[str, Sequence[Row]]) -> Promise:
+def _finite(rows: Mapping[str, Sequence[ConditionRun]]) -> Promise:
     every = [row for found in rows.values() for row in found]
     if not every:
         return Promise(_WELL, "no run", "all", None)

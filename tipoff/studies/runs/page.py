@@ -7,7 +7,7 @@ from tipoff.mechanics import instant
 from tipoff.studies.render.document import Figure, Part
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.runs import figures
-from tipoff.studies.runs.results import AtExit, Row, Settled
+from tipoff.studies.runs.results import AtExit, ConditionRun, Settled
 from tipoff.studies.runs.thrust_facts import thrust_facts
 
 if TYPE_CHECKING:
@@ -21,11 +21,11 @@ _CURVES = (
 )
 
 
-def settled(rows: Sequence[Row]) -> Table:
+def settled(rows: Sequence[ConditionRun]) -> Table:
     """Velocity and rates of each condition for the terminal, at the instant that counts."""
     under = [row.rail_compliance["words"] for row in rows if row.rail_compliance]
     notes = tuple(dict.fromkeys(under))
-    return Table.of_records(rows, *_SETTLED, notes=notes, kind=Row)
+    return Table.of_records(rows, *_SETTLED, notes=notes, kind=ConditionRun)
 
 
 def _of_taken(head: Column, cell: Callable[[Settled | AtExit], Any]) -> tuple[Column, Callable]:

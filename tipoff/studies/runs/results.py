@@ -58,7 +58,7 @@ def transverse(rate: Sequence[float]) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class ConditionRun:
     """One run. ``settled`` is None if it did not settle; ``at_exit`` is None for the reason
     ``no_exit_values``; ``impulse_after_exit`` is a share, None without exit or thrust; ``advice``
     is empty unless the run ended too early; ``by_hand`` is None if more than one pad touches;
@@ -119,5 +119,5 @@ class Runs:
     """``failed``: a line for each run that diverged, was refused, or reached the end of the scene too
     early."""
 
-    conditions: tuple[Row, ...]
+    conditions: tuple[ConditionRun, ...]
     failed: tuple[str, ...]

@@ -11,7 +11,7 @@ from tipoff.mechanics.outcome import Outcome, no_exit_values
 from tipoff.results import hand_calculation, unfinished
 from tipoff.results.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
-from tipoff.studies.runs.results import AtExit, ByHand, Row, Runs, Settled, Vector
+from tipoff.studies.runs.results import AtExit, ByHand, ConditionRun, Runs, Settled, Vector
 from tipoff.workspace.run import Run
 from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import FAILED, Study
@@ -72,7 +72,7 @@ def failure(name: str, request: Run, found: Trajectory) -> list[str]:
     return [f"{name}: {found.status}: {words}"]
 
 
-def row(name: str, run: Trajectory, path: str, request: Run | None = None) -> Row:
+def row(name: str, run: Trajectory, path: str, request: Run | None = None) -> ConditionRun:
     """The row of a condition; advice, thrust and rates by hand belong to the ``request``."""
     cost, checks = run.cost, run.checks
     beside = {} if request is None else _beside(request, run)
@@ -82,7 +82,7 @@ def row(name: str, run: Trajectory, path: str, request: Run | None = None) -> Ro
             "ns_per_element_step": cost["ns_per_element_step"],
             "ns_per_element_stepped": cost["ns_per_element_stepped"],
         } | stresses.facts(run)
-    return Row(
+    return ConditionRun(
         condition=name,
         model=run.model,
         status=run.status,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Caption, Image, Notice, Part
 from tipoff.studies.render.table import Column, Table
-from tipoff.studies.runs.results import Row
+from tipoff.studies.runs.results import ConditionRun
 from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
@@ -24,7 +24,9 @@ def draw(page: "Page") -> list[Part]:
     return shown(rows, page.results.get("view") or [], page.folder, page.command("view"))
 
 
-def shown(rows: Sequence[Row], views: "Sequence[View]", folder: Path, command: str) -> list[Part]:
+def shown(
+    rows: Sequence[ConditionRun], views: "Sequence[View]", folder: Path, command: str
+) -> list[Part]:
     """The section: ``rows`` of highfi.json; ``views``, results of the stage ``view``, with files
     below ``folder``; ``command``, which makes these results."""
     measured = [row for row in rows if row.peak_stress_pa is not None]
@@ -56,17 +58,17 @@ def shown(rows: Sequence[Row], views: "Sequence[View]", folder: Path, command: s
     ]
 
 
-def _of_yield(row: Row) -> float | None:
+def _of_yield(row: ConditionRun) -> float | None:
     if row.yield_strength_pa is None or row.peak_stress_pa is None:
         return None
     return row.peak_stress_pa / row.yield_strength_pa
 
 
-def _place(row: Row) -> str:
+def _place(row: ConditionRun) -> str:
     return ", ".join(f"{1e3 * value + 0.0:.5g}" for value in row.peak_stress_place_m or ())
 
 
-def _rotation(row: Row) -> float | None:
+def _rotation(row: ConditionRun) -> float | None:
     return row.largest_rotation_rad and math.degrees(row.largest_rotation_rad)
 
 

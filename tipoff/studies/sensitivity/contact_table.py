@@ -79,7 +79,7 @@ class Deviations:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row(Deviations):
+class PerturbedRun(Deviations):
     """A ``Change`` of a ``condition``: the changed value, rates, and ``values`` of further
     quantities by name, with the change of each. None if a case did not settle or the paper has no
     value."""
@@ -108,12 +108,12 @@ def rows(
     changed: Sequence[Change],
     rates: np.ndarray,
     others: Mapping[str, np.ndarray] | None = None,
-) -> list[Row]:
+) -> list[PerturbedRun]:
     """Rows of the table for one condition; ``rates`` (n,3) in deg/s, NaN where a case did not
     settle; ``others`` (n,), further quantities by name."""
     found, columns = [], others or {}
     for place, (change, rate) in enumerate(zip(changed, rates)):
-        row = Row(
+        row = PerturbedRun(
             condition=condition,
             symbol=change.symbol,
             raised=change.raised,
@@ -134,7 +134,7 @@ def rows(
     return found
 
 
-def of_paper() -> list[Row]:
+def of_paper() -> list[PerturbedRun]:
     """Table 2 of the paper with the deviations that follow from its rates."""
     names = {number: name for name, number in published.CONDITIONS.items()}
     found = []
@@ -143,7 +143,7 @@ def of_paper() -> list[Row]:
         baseline = row.rates if row.raised is None else baseline
         assert baseline is not None  # the first row of each condition
         found.append(
-            Row(
+            PerturbedRun(
                 condition=names[row.condition],
                 symbol=row.symbol,
                 raised=row.raised,
@@ -154,7 +154,7 @@ def of_paper() -> list[Row]:
     return found
 
 
-def largest(table: Sequence[Row], symbols: Sequence[str] | None = None) -> Deviations:
+def largest(table: Sequence[PerturbedRun], symbols: Sequence[str] | None = None) -> Deviations:
     """Largest deviations by axis over the rows of a table, or over those of ``symbols``."""
     moved = [
         row
@@ -177,7 +177,7 @@ def largest(table: Sequence[Row], symbols: Sequence[str] | None = None) -> Devia
     )
 
 
-def most_moved(table: Sequence[Row]) -> dict[str, float]:
+def most_moved(table: Sequence[PerturbedRun]) -> dict[str, float]:
     """The largest change of each quantity over the rows of a table, without the clearance; empty
     where no row settled."""
     moved = [

@@ -15,7 +15,7 @@ from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, span
 from tipoff.studies.render.uncertain import Measured, number, uncertain
-from tipoff.studies.sensitivity.contact_table import Axes, Row
+from tipoff.studies.sensitivity.contact_table import Axes, PerturbedRun
 from tipoff.studies.sensitivity.indices import Indices
 from tipoff.studies.sensitivity.results import Constants, Paper, Sensitivity, Shares, Sobol
 from tipoff.workspace.words import counted
@@ -239,7 +239,7 @@ def _beside_paper(item: Constants, paper: Paper) -> Table:
     return Table(_HEADS, rows, notes=(_TABLE,), title=title, dense=True)
 
 
-def _changed(row: Row) -> str:
+def _changed(row: PerturbedRun) -> str:
     if row.raised is None or row.share is None:
         return "nothing"
     if row.symbol == "clearance":
@@ -247,14 +247,14 @@ def _changed(row: Row) -> str:
     return f"{row.symbol} {'+' if row.raised else '-'}{100.0 * row.share:.3g} %"
 
 
-def _moved(row: Row) -> tuple:
+def _moved(row: PerturbedRun) -> tuple:
     """Rates and their changes; none for the baseline."""
     if row.raised is None:
         return row.rate_deg_s, "", ""
     return row.rate_deg_s, *(("0", "0") if _still(row) else (row.absolute_deg_s, row.relative))
 
 
-def _still(row: Row) -> bool:
+def _still(row: PerturbedRun) -> bool:
     """Whether no rate changed by more than errors of integration."""
     return row.absolute_deg_s is not None and all(
         abs(each or 0.0) < _STILL for each in row.absolute_deg_s

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from tipoff.studies.populations.answers import Named
 from tipoff.studies.populations.population import Answering
 from tipoff.studies.render.column import Column
-from tipoff.studies.sensitivity.contact_table import Deviations, Row
+from tipoff.studies.sensitivity.contact_table import Deviations, PerturbedRun
 from tipoff.studies.sensitivity.indices import Indices
 from tipoff.studies.sensitivity.options import Options
 
@@ -15,7 +15,7 @@ from tipoff.studies.sensitivity.options import Options
 class Paper:
     """A table of changed constants, and its largest deviations."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[PerturbedRun, ...]
     largest: Deviations
 
 

@@ -15,7 +15,7 @@ from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
 from tipoff.studies.sensitivity import contact_table, indices, tolerances
-from tipoff.studies.sensitivity.contact_table import Row
+from tipoff.studies.sensitivity.contact_table import PerturbedRun
 from tipoff.studies.sensitivity.options import HALVINGS, Options
 from tipoff.studies.sensitivity.results import (
     Constants,
@@ -98,7 +98,7 @@ def _table(study: Study, model: Surrogate) -> Constants:
     found = population.run(study, f"{NAME}-table", model, Listed(rows), _FINE)
     rates, count = np.degrees(found.results.rate), len(changed)
     values = {item.name: item.of(found.results) for item in answers.ALL}
-    table: list[Row] = []
+    table: list[PerturbedRun] = []
     for place, name in enumerate(names):
         part = slice(place * count, (place + 1) * count)
         others = {key: column[part] for key, column in values.items()}

@@ -21,7 +21,7 @@ from tipoff.scenes.scene import Scene, catalog
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.render.uncertain import uncertain
-from tipoff.studies.runs.results import Row
+from tipoff.studies.runs.results import ConditionRun
 from tipoff.studies.runs.stage import failure, row
 from tipoff.units import duration
 from tipoff.workspace import disturbed, models, words
@@ -41,7 +41,7 @@ _COMPARED = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Single(Row):
+class Single(ConditionRun):
     """A single run: its ``agreement`` as text, its changes when ``disturbed`` (None for the
     reference and if it does not settle), and ``failed``, a line if it is no success."""
 
@@ -92,9 +92,9 @@ def several(names: Sequence[str], make: Callable[[str], dict]) -> dict:
     return {"conditions": rows, "failed": failed}
 
 
-def rows(found: dict) -> tuple[Row, ...]:
+def rows(found: dict) -> tuple[ConditionRun, ...]:
     """The runs in a result of ``several`` conditions."""
-    return TypeAdapter(tuple[Row, ...]).validate_python(found["conditions"])
+    return TypeAdapter(tuple[ConditionRun, ...]).validate_python(found["conditions"])
 
 
 def chosen(
@@ -255,12 +255,12 @@ def _stop(scene: Scene) -> list[str]:
     return [f"  stop          the payload rests on a stop behind it {until} {weight}"]
 
 
-def _after(row: Row) -> str:
+def _after(row: ConditionRun) -> str:
     share = row.impulse_after_exit
     return "" if share is None else f", {100.0 * share:.3g} % of the impulse after it"
 
 
-def _answer(row: Row) -> list[str]:
+def _answer(row: ConditionRun) -> list[str]:
     """Velocity and rates at the instant that counts, and before them or after them those at the other
     one."""
     at_exit = row.at == instant.EXIT
@@ -286,7 +286,7 @@ def _answer(row: Row) -> list[str]:
     return text
 
 
-def _by_hand(row: Row) -> list[str]:
+def _by_hand(row: ConditionRun) -> list[str]:
     """The settled rates by hand."""
     if row.by_hand is None:
         return []
@@ -294,7 +294,7 @@ def _by_hand(row: Row) -> list[str]:
     return [f"  by hand       {rates} deg/s: {row.by_hand.words}"]
 
 
-def _at_exit(row: Row) -> list[str]:
+def _at_exit(row: ConditionRun) -> list[str]:
     """Speed and rates at exit, or why they are not known; nothing without an exit."""
     if row.exit_time_s is None:
         return []
@@ -309,7 +309,7 @@ def _vector(values: Sequence[float]) -> str:
     return ", ".join(uncertain(value, least=1e-4) for value in values)
 
 
-def _stress(row: Row) -> list[str]:
+def _stress(row: ConditionRun) -> list[str]:
     if row.peak_stress_pa is None or row.peak_stress_time_s is None:
         return []
     place = ", ".join(f"{1e3 * value + 0.0:.4g}" for value in row.peak_stress_place_m or ())
