@@ -11,7 +11,6 @@ from markupsafe import Markup
 
 from tipoff.mechanics.instant import EXIT, Instant, chosen
 from tipoff.mechanics.instant import where as instant_words
-from tipoff.scenes import provenance
 from tipoff.scenes.overrides import is_drop
 from tipoff.studies.agreement import distribution_page, verdicts
 from tipoff.studies.agreement import stage as compare
@@ -33,7 +32,7 @@ from tipoff.studies.render.uncertain import (
     rounded,
     uncertain,
 )
-from tipoff.studies.report import drawing, inputs
+from tipoff.studies.report import drawing, trust
 from tipoff.studies.runs.results import ConditionRun, Settled, roll, transverse
 from tipoff.workspace.words import counted
 
@@ -83,7 +82,7 @@ def draw(page: "Page") -> list[Part]:
         *first,
         *([Heading("Over all conditions"), *over_all] if first else over_all),
         Heading("How far it can be trusted"),
-        Bullets([*_numerics(compared), *_model(compared), *_inputs(page, agreement)]),
+        Bullets(trust.lines(page.scene, compared, agreement)),
         drawing.launcher(page.scene),
         Heading("Every condition"),
         _conditions(page, rows, compared, spreads),
@@ -166,7 +165,7 @@ def _largest(
             if name in spreads:
                 return range_of(*spreads[name].within(measure)), name
             return uncertain(
-                measure(settled[name].rate_deg_s), _uncertainty(compared.get(name))
+                measure(settled[name].rate_deg_s), trust.uncertainty(compared.get(name))
             ), name
 
         value, name = shown(settled)
@@ -181,10 +180,6 @@ def _largest(
     name = max(settled, key=lambda name: settled[name].direction_error_deg)
     off = settled[name].direction_error_deg
     return [*figures, (number(off, ".2g", LEAST), f"largest angle off axis (deg): {name}")]
-
-
-def _uncertainty(row: verdicts.JudgedCondition | None) -> float | None:
-    return None if row is None else row.reference_uncertainty_deg_s
 
 
 def _limits(
@@ -249,7 +244,7 @@ def _conditions(
             [
                 row.condition,
                 stated(page, row.condition),
-                *(_rates(settled, _uncertainty(other), spread) if settled else [None] * 3),
+                *(_rates(settled, trust.uncertainty(other), spread) if settled else [None] * 3),
                 *(_at_exit(row) if _burns_on(rows) else []),
                 *([_hand(row)] if _by_hand(rows) else []),
                 settled and settled.direction_error_deg,
@@ -342,61 +337,3 @@ def _readable(value: Any) -> str:
 
 
 _LONG = re.compile(r"\d+\.\d{5,}(?![\d.eE])")
-
-
-def _numerics(compared: dict[str, verdicts.JudgedCondition]) -> list[str]:
-    known = {
-        name: value for name, row in compared.items() if (value := _uncertainty(row)) is not None
-    }
-    if not known:
-        return ["numerics: the uncertainty of the reference is not measured"]
-    name = max(known, key=lambda name: known[name])
-    open_ = [name for name, row in compared.items() if not row.reference_converged]
-    return [
-        "numerics: the uncertainty of the reference by mesh, step and contact cells is at most "
-        f"{number(known[name], '.2g', LEAST)} deg/s ({name})"
-        + (f"; it is not converged on {', '.join(open_)}" if open_ else "")
-    ]
-
-
-def _model(compared: dict[str, verdicts.JudgedCondition]) -> list[str]:
-    errors = [
-        row.settled_rate_error_deg_s
-        for row in compared.values()
-        if row.is_judged_as_curve and row.settled_rate_error_deg_s is not None
-    ]
-    chaotic = [row for row in compared.values() if row.judged_as == verdicts.DISTRIBUTION]
-    alike = sum(row.judgement == verdicts.AS_DISTRIBUTION for row in chaotic)
-    found = (
-        "model: on conditions judged as curves, the surrogate is within "
-        f"{number(max(errors), '.2g', LEAST)} deg/s of the finite elements; "
-        if errors
-        else "model: no condition can be judged as a curve; "
-        if compared
-        else "model: surrogate and finite elements were not compared (tipoff compare); "
-    )
-    if chaotic:
-        found += f"as distributions {alike} of {len(chaotic)} conditions agree; "
-    return [f"{found}neither model was validated on a measured ejection"]
-
-
-def _inputs(page: "Page", agreement: Agreement | None) -> list[str]:
-    assumed, every = 0, 0
-    for key, _, _, was_stated in inputs.values(page.scene):
-        every += 1
-        text = provenance.of(page.scene.provenance, key) or ""
-        assumed += text.startswith("assumed") or (was_stated and not text)
-    moved = ""
-    if agreement is not None:
-        floor = verdicts.largest(row.floor_deg_s for row in agreement.compliant)
-        change = verdicts.largest(row.reference_change_deg_s for row in agreement.interface)
-        if floor is not None:
-            moved += (
-                f"; 1 µm of clearance changes a rate by up to {number(floor, '.2g', LEAST)} deg/s"
-            )
-        if change is not None:
-            moved += (
-                f"; a quarter or four times the interface stiffness by up to "
-                f"{number(change, '.2g', LEAST)} deg/s"
-            )
-    return [f"inputs: {assumed} of {every} values are assumed or have no stated source{moved}"]
