@@ -191,9 +191,10 @@ def test_numbers_may_fill_their_columns(text, tmp_path):
 
 
 @pytest.mark.parametrize("text", [dyna.NODOUT, dyna.RBDOUT], ids=["nodout", "rbdout"])
-@pytest.mark.parametrize("lost", range(1, 14))
+@pytest.mark.parametrize("lost", [*range(1, 14), 36, 72])
 def test_a_cut_number_is_not_taken_for_another_one(text, lost, tmp_path):
-    """5.0E-06 without its exponent is 5. The whole file without its last line end is read."""
+    """5.0E-06 without its exponent is 5. A line of six numbers may be cut to the length of one of three. The
+    whole file without its last line end is read."""
     last = (
         text.rindex("  6.0000-105\n") + 12
         if text is dyna.NODOUT
@@ -203,6 +204,13 @@ def test_a_cut_number_is_not_taken_for_another_one(text, lost, tmp_path):
     assert not found.faults and found.values["time"].tolist() == [0.0]
     found = read_quantities(dyna.written(tmp_path, "b", text[:last]), layout())
     assert not found.faults and len(found.values["time"]) == 2
+
+
+def test_a_cut_line_of_one_kind_may_have_the_length_of_another(tmp_path):
+    """Twelve numbers of a node, cut to the nine of its rotation."""
+    moved = dyna.NODOUT.rsplit("\n\n\n n o d a l", 1)[0].rstrip("\n")
+    found = read_quantities(dyna.written(tmp_path, "a", moved[:-36]), layout())
+    assert not found.faults and found.values["time"].tolist() == [0.0]
 
 
 @pytest.mark.parametrize(

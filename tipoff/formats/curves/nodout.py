@@ -137,14 +137,14 @@ def table_of_states(source: str, kind: str, states: list[dict[str, float]]) -> C
 
 
 def _nodes(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Block]:
-    time, columns, lengths = None, None, set[int]()
+    time, columns, lengths = None, None, set[tuple[int, int]]()
     for number, line in enumerate(text, 1):
         if match := _NODE_TIME.search(line):
             time, columns = _number(source, number, match[1]), None
         elif line.lstrip().startswith("nodal point"):
             columns = list(_OF_NODE_TURN if "x-rot" in line else _OF_NODE)
         elif time is not None and columns is not None and line.strip():
-            if _may_be_cut(line, lengths):
+            if _may_be_cut(line, len(columns), lengths):
                 return
             node, cells = _fields(line, len(columns))
             values = [_number(source, number, cell) for cell in cells]
@@ -156,7 +156,7 @@ def _nodes(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Blo
 
 
 def _bodies(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Block]:
-    time, body, is_global, lengths = None, None, False, set[int]()
+    time, body, is_global, lengths = None, None, False, set[tuple[int, int]]()
     for number, line in enumerate(text, 1):
         head, colon, rest = line.partition(":")
         if match := _BODY_TIME.search(line):
@@ -166,9 +166,9 @@ def _bodies(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Bl
         elif line.lstrip().startswith(("principal", "output in")):
             is_global = False
         elif colon and time is not None and body is not None and is_global:
-            if _may_be_cut(line, lengths):
-                return
             columns = list(_OF_BODY.get(head.strip(), ()))
+            if _may_be_cut(line, len(columns), lengths):
+                return
             other, cells = _fields(rest, len(columns))
             values = [_number(source, number, cell) for cell in (*other.split(), *cells)]
             if len(values) != len(columns):
@@ -177,9 +177,10 @@ def _bodies(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Bl
             yield _Block(time, body, columns, values)
 
 
-def _may_be_cut(line: str, lengths: set[int]) -> bool:
-    """Whether a line has no end, and another length than lines before it; adds its length."""
-    length = len(line.rstrip("\r\n"))
+def _may_be_cut(line: str, count: int, lengths: set[tuple[int, int]]) -> bool:
+    """Whether a line of ``count`` numbers has no end, and another length than such lines before it; adds
+    its length."""
+    length = count, len(line.rstrip("\r\n"))
     if line.endswith("\n"):
         lengths.add(length)
         return False
