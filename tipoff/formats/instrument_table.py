@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff import units
-from tipoff.faults import Fault
+from tipoff.faults import Fault, SceneError
 from tipoff.formats import csv_file
 from tipoff.formats.csv_file import Line
 
@@ -30,12 +30,14 @@ _SEARCHED = 1000  # lines in front of the numbers in which the header is searche
 _SAMPLE = 100  # lines in which the separator is searched
 _COLUMNS = ("s", "N", "m/s", "rad/s", "m/s**2")  # units of which a line of units has one
 _SUMMARY = ("minimum", "maximum", "total")  # last lines of a report of Abaqus
+_ALIKE = 10  # lines of a program, which writes all numbers in one way
 _SHOWN = 200  # characters of a header in a message
 _NUMBER = re.compile(r'\s*"?\s*[+-]?(\d|[.,]\d|nan\b|inf\b)', re.I)
 _DECIMAL_COMMAS = re.compile(
     r"\s*[+-]?\d+(,\d+)?([eE][+-]?\d+)?( +[+-]?\d+(,\d+)?([eE][+-]?\d+)?)+\s*"
 )
 _GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")  # "1,234" may be 1234 or 1.234
+_PARTS = re.compile(r"[+-]?\d*(?:[.,](\d*))?(?:[eEdD][+-]?(\d*))?")
 _TIME = {"time", "t", "timestamp", "zeit"}
 _SHORTEST = 3  # letters of a unit that may have another case, "Newtons"; "mN" and "MN" differ
 
@@ -105,7 +107,8 @@ def read_table(
     summary are left out.
 
     With ``is_loose`` rows of text may be between blanks too, and lines between the header and the numbers are
-    left out. Raises SceneError as ``csv_file.lines`` does.
+    left out, and a last line that is cut. Raises SceneError as ``csv_file.lines`` does, and for a last
+    number that is cut.
     """
     data = _utf_8(data)
     lines = list(io.StringIO(data.decode("utf-8-sig", "ignore"), newline=""))
@@ -116,6 +119,11 @@ def read_table(
         for number, row in csv_file.listed(path, data, marks, separator)
         if any(cells := [cell.strip() for cell in row])
     ]
+    if data[-1:] not in b"\r\n" and (cut := _cut_cell(rows)) is not None:
+        if not is_loose:
+            given = f"a last line without its end, with fewer digits in {cut!r} than before"
+            raise SceneError([Fault(str(path), "file", given, "a whole file")])
+        rows.pop()
     while rows and rows[-1][1][0].lower() in _SUMMARY:
         rows.pop()
     # between blanks a title may have numbers
@@ -190,6 +198,32 @@ def stated(unit: str, si: str) -> float:
 def words(name: str) -> set[str]:
     """The words of a name, in lower case."""
     return set(re.findall(r"[^\W\d_]+", name.lower()))
+
+
+def _cut_cell(rows: list[Line]) -> str | None:
+    """The last cell of a table that ends without a line end, if it may be cut: the lines before have a
+    number there with as many decimals and digits of the exponent, and it has fewer, or its line has
+    fewer cells. None otherwise."""
+    before = [cells for _, cells in rows[-_ALIKE - 1 : -1]]
+    if len(before) < _ALIKE or len({len(cells) for cells in before}) > 1:
+        return None
+    last = rows[-1][1]
+    place = min(len(last), len(before[0])) - 1
+    ways = {_digits(cells[place]) for cells in before}
+    own, usual = _digits(last[place]), ways.pop()
+    if ways or own is None or usual is None:
+        return None
+    is_shorter = own != usual and all(one <= other for one, other in zip(own, usual))
+    return last[place] if is_shorter or len(last) < len(before[0]) else None
+
+
+def _digits(cell: str) -> tuple[int, int] | None:
+    """Decimals and digits of the exponent of a number, -1 without a point or an exponent; None for other
+    text."""
+    if (found := _PARTS.fullmatch(cell)) is None:
+        return None
+    decimals, exponent = (-1 if part is None else len(part) for part in found.groups())
+    return decimals, exponent
 
 
 def _header(
