@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from tipoff.formats.declared import declared, of_suffix
+from tipoff.formats.declared import Format, declared, of_suffix
 
 ROOMS = ("curves", "logs", "meshes", "sections", "thrusts")
 READER = """from tipoff.formats.declared import Format
@@ -51,6 +51,14 @@ def test_a_file_in_the_folder_is_a_format(folder):
 
 def test_a_file_that_no_format_reads_has_none(folder):
     assert of_suffix(declared(room(folder, "a_room_without")), "rail.c") is None
+
+
+def test_a_declaration_of_another_kind_is_refused(folder):
+    class OfAnotherRoom(Format):
+        pass
+
+    with pytest.raises(ValueError, match="is a OfAnotherRoom, and a is none"):
+        declared(room(folder, "a_room_of_kinds"), OfAnotherRoom)
 
 
 @pytest.mark.parametrize(

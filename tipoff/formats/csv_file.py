@@ -95,7 +95,7 @@ def between_blanks(line: str) -> list[str]:
     return _WORD.findall(line)
 
 
-def head(cell: str) -> tuple[str, str | None]:
+def name_and_unit(cell: str) -> tuple[str, str | None]:
     """Name and unit of a column from its cell in a header: ``Time [ms]`` or ``Time (ms)``."""
     text = " ".join(cell.split())  # a quoted cell may hold line breaks
     if (found := _HEAD.fullmatch(text)) is None:

@@ -31,12 +31,15 @@ Kind = TypeVar("Kind", bound=Format)
 
 
 @functools.cache
-def declared(room: str) -> tuple[Format, ...]:
+def declared(room: str, kind: type[Kind] = Format) -> tuple[Kind, ...]:  # type: ignore[assignment]
     """The formats of all modules in the folder of a package, by the names of the modules; the one for
-    any other file is last. Raises ValueError for a suffix of two formats."""
+    any other file is last. Raises ValueError for a declaration of another ``kind`` and for a suffix of
+    two formats."""
     folder = importlib.import_module(room).__path__
     modules = [importlib.import_module(f"{room}.{each.name}") for each in _modules(folder)]
     found = [each for module in modules for each in getattr(module, "FORMATS", ())]
+    if others := [each.name for each in found if not isinstance(each, kind)]:
+        raise ValueError(f"a format of {room} is a {kind.__name__}, and {others[0]} is none")
     suffixes = [suffix for each in found for suffix in each.suffixes]
     if len(set(suffixes)) < len(suffixes) or sum(each.is_any_other for each in found) > 1:
         raise ValueError(f"two formats of {room} for one file, among {', '.join(suffixes)}")

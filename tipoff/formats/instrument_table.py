@@ -72,7 +72,7 @@ class Written(NamedTuple):
 
     def unit(self, place: int, si: str) -> str | None:
         """The unit that the table states for a column of dimension ``si``; None without one."""
-        stated = head(self.header[place], si)[1] if self.header else None
+        stated = name_and_unit(self.header[place], si)[1] if self.header else None
         below = self.units[place].strip("[]() ") if place < len(self.units) else ""
         return stated if stated is not None else below or None
 
@@ -80,12 +80,16 @@ class Written(NamedTuple):
         """Columns with this name, with or without its unit."""
         cells, name = self.names(), name.lstrip("#% ")  # a header may be behind a comment mark
         whole = [place for place, cell in enumerate(cells) if cell == name]
-        return whole or [place for place, cell in enumerate(cells) if head(cell, si)[0] == name]
+        return whole or [
+            place for place, cell in enumerate(cells) if name_and_unit(cell, si)[0] == name
+        ]
 
     def times(self) -> list[int]:
         """Columns whose name says that they are times."""
         return [
-            place for place, cell in enumerate(self.header) if words(head(cell, "s")[0]) & _TIME
+            place
+            for place, cell in enumerate(self.header)
+            if words(name_and_unit(cell, "s")[0]) & _TIME
         ]
 
     def numbers(
@@ -158,9 +162,9 @@ def read_table(
     )
 
 
-def head(cell: str, si: str) -> tuple[str, str | None]:
+def name_and_unit(cell: str, si: str) -> tuple[str, str | None]:
     """Name and unit of a column of dimension ``si`` from its cell in a header."""
-    text, unit = csv_file.head(cell)
+    text, unit = csv_file.name_and_unit(cell)
     if unit and not unit.isdigit():  # a number counts the parts of a vector
         return text, unit
     text = " ".join(cell.split())

@@ -8,7 +8,7 @@ import numpy as np
 from tipoff.faults import SceneError
 from tipoff.files import read_input
 from tipoff.formats import instrument_table
-from tipoff.formats.instrument_table import Written, head
+from tipoff.formats.instrument_table import Written, name_and_unit
 
 _COLUMNS = {"travel": "m", "force": "N"}
 
@@ -63,7 +63,7 @@ def _parsed(path: str, data: bytes) -> Push:
 
 def _likeness(cells: list[str]) -> float:
     """Share of the columns that a header has."""
-    names = [head(cell, si)[0] for cell in cells for si in _COLUMNS.values()]
+    names = [name_and_unit(cell, si)[0] for cell in cells for si in _COLUMNS.values()]
     return sum(name in names for name in _COLUMNS) / len(_COLUMNS)
 
 

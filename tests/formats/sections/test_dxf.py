@@ -7,7 +7,7 @@ import pytest
 
 from tipoff.formats.outline import outline
 from tipoff.formats.sections.dxf import read_dxf
-from tipoff.formats.sections.paths import DEVIATION
+from tipoff.formats.sections.loops import DEVIATION
 from tipoff.units import LENGTHS_OF_FILES
 
 

@@ -13,26 +13,22 @@ _HDF5 = b"\x89HDF\r\n\x1a\n"
 _BLOCK = 2**20
 
 
-def formats() -> list[CurveFormat]:
-    """The formats that are read; the last one is for any other file."""
-    return [each for each in declared(__package__) if isinstance(each, CurveFormat)]
-
-
 def read_curves(path: str | Path, asked: Asked) -> tuple[CurveTable, str]:
     """The table of a file and its digest (SHA-256). Raises SceneError and OSError."""
     file = CurveFile(path)
     _require_described(file)
-    for each in formats():
+    formats = declared(__package__, CurveFormat)
+    for each in formats:
         if each.begins is not None and each.begins(file.head):
             parts = each.parts(file.path) if each.parts else [file.path]
             return each.read(file, asked), _digest(parts)
     digest = hashlib.sha256(file.data).hexdigest()
-    fitting = (each for each in formats() if each.is_any_other or (each.is_in or _no)(file.data))
+    fitting = (
+        each
+        for each in formats
+        if each.is_any_other or (each.is_in is not None and each.is_in(file.data))
+    )
     return next(fitting).read(file, asked), digest
-
-
-def _no(data: bytes) -> bool:
-    return False
 
 
 def _require_described(file: CurveFile) -> None:

@@ -8,7 +8,7 @@ import re
 
 from tipoff.faults import Fault, SceneError
 from tipoff.files import MOST_TEXT
-from tipoff.formats.csv_file import head
+from tipoff.formats.csv_file import name_and_unit
 from tipoff.formats.curves.record import Asked, CurveFile, CurveFormat, CurveTable
 from tipoff.formats.instrument_table import is_unit, read_table
 
@@ -32,7 +32,7 @@ def read_text_table(file: CurveFile, asked: Asked) -> CurveTable:
     if not table.rows:
         given, words = "no line of numbers", "a table with times in a column"
         raise SceneError([Fault(source, "file", given, words)])
-    heads = [head(cell) for cell in table.header]
+    heads = [name_and_unit(cell) for cell in table.header]
     below = [cell or None for cell in table.units] or [None] * len(heads)
     # a name in --columns may have the brackets
     names = [
@@ -46,7 +46,7 @@ def read_text_table(file: CurveFile, asked: Asked) -> CurveTable:
 
 
 def _spellings(cell: str) -> set[str]:
-    name, unit = head(cell)
+    name, unit = name_and_unit(cell)
     return {name, f"{name} [{unit}]", f"{name} ({unit})"}
 
 

@@ -51,7 +51,7 @@ class _Keyword(NamedTuple):
     data: list[tuple[int, list[str]]]  # number of a line and its fields
     line: int
 
-    def of(self, parameter: str) -> str:
+    def required(self, parameter: str) -> str:
         """Value of a required parameter. Raises Unreadable without it."""
         value = self.given.get(parameter, "")
         if not value:
@@ -127,7 +127,7 @@ def _take(model: Model, keyword: _Keyword) -> None:
         case "SURFACE":
             _surface(model, keyword)
         case "PART":
-            model.scope = keyword.of("NAME").upper()
+            model.scope = keyword.required("NAME").upper()
             model.current = model.parts[model.scope] = Body()
         case "INSTANCE":
             _instance(model, keyword)
@@ -157,7 +157,7 @@ def _add(
 
 
 def _elements(model: Model, keyword: _Keyword) -> None:
-    body, found = model.current, _element_type(keyword.of("TYPE"))
+    body, found = model.current, _element_type(keyword.required("TYPE"))
     labels = []
     if found is None:
         labels = [whole(fields[0], line) for line, fields in keyword.data]
@@ -186,7 +186,7 @@ def _elements(model: Model, keyword: _Keyword) -> None:
 
 
 def _set(model: Model, keyword: _Keyword, sets: dict[str, list[Reference]]) -> None:
-    members = sets.setdefault(model.named(keyword.of(keyword.name)), [])
+    members = sets.setdefault(model.named(keyword.required(keyword.name)), [])
     if keyword.name == "NSET" and "ELSET" in keyword.given:
         raise Unreadable(f"line {keyword.line}: *NSET of an element set; write its nodes")
     scope = keyword.given.get("INSTANCE", model.scope).upper()
@@ -215,8 +215,8 @@ def _reference(field: str, scope: str, line: int) -> Reference:
 def _surface(model: Model, keyword: _Keyword) -> None:
     kind = keyword.given.get("TYPE", "ELEMENT").upper()
     if kind == "NODE":
-        nodes = model.current.node_sets.setdefault(model.named(keyword.of("NAME")), [])
-        name = keyword.of("NAME").upper()
+        nodes = model.current.node_sets.setdefault(model.named(keyword.required("NAME")), [])
+        name = keyword.required("NAME").upper()
         found = [
             _reference(fields[0], model.scope, line) for line, fields in keyword.data if fields
         ]
@@ -225,10 +225,10 @@ def _surface(model: Model, keyword: _Keyword) -> None:
     if kind not in ("ELEMENT", "NODE") or "COMBINE" in keyword.given:
         given = f"COMBINE={keyword.given['COMBINE']}" if "COMBINE" in keyword.given else kind
         reason = f"line {keyword.line}: *SURFACE with {given}; write its elements and their sides"
-        model.left_out[model.written[model.named(keyword.of("NAME"))]] = reason
+        model.left_out[model.written[model.named(keyword.required("NAME"))]] = reason
     if kind != "ELEMENT" or "COMBINE" in keyword.given:
         return
-    members = model.current.surfaces.setdefault(model.named(keyword.of("NAME")), [])
+    members = model.current.surfaces.setdefault(model.named(keyword.required("NAME")), [])
     for line, fields in keyword.data:
         if fields and fields[0]:
             face = fields[1].upper() if len(fields) > 1 else ""
@@ -236,7 +236,7 @@ def _surface(model: Model, keyword: _Keyword) -> None:
 
 
 def _instance(model: Model, keyword: _Keyword) -> None:
-    model.scope, part = keyword.of("NAME").upper(), keyword.given.get("PART", "").upper()
+    model.scope, part = keyword.required("NAME").upper(), keyword.given.get("PART", "").upper()
     if part and part not in model.parts:
         raise Unreadable(f"line {keyword.line}: no part {part}")
     model.current = model.bodies[model.scope] = body = Body(part)

@@ -104,7 +104,7 @@ class _Members:
             self._found[key] = None
             gathered: dict[str, set[int]] = {}
             for one in self.sets(body)[name]:
-                for owner, labels in self.of(one).items():
+                for owner, labels in self.of_line(one).items():
                     gathered.setdefault(owner, set()).update(labels)
             self._found[key] = gathered
         found = self._found[key]
@@ -112,7 +112,7 @@ class _Members:
             raise Unreadable(f"line {line}: {what} set {name} contains itself")
         return found
 
-    def of(self, reference: Reference) -> dict[str, set[int]]:
+    def of_line(self, reference: Reference) -> dict[str, set[int]]:
         """Members that a line names; of a range, those that exist."""
         scope, numbers, name, line = reference
         if name:
@@ -173,7 +173,7 @@ def _add_elements(model: Model, groups: "_Groups") -> None:
             shown_name = groups.add(model.written[name])
             with _refused(model, name):
                 for reference, face in lines:
-                    found = members.of(reference)
+                    found = members.of_line(reference)
                     groups.extend_by_faces(shown_name, found, face, reference.line)
         if body.part:
             whole = {scope: {one for found in body.elements.values() for one in found}}

@@ -113,7 +113,7 @@ def read_nastran(content: bytes) -> meshio.Mesh:
         parts = groups.setdefault(any_case(name) or name, [nothing] * len(blocks))
         parts[place] = np.arange(len(blocks[place].nodes))
     for place, block in enumerate(blocks):
-        for name, members in sets.of(_ELEMENTS, block.labels).items():
+        for name, members in sets.places(_ELEMENTS, block.labels).items():
             parts = groups.setdefault(any_case(name) or name, [nothing] * len(blocks))
             parts[place] = np.union1d(parts[place], members)
     numbers = np.array(labels, dtype=np.int64)
@@ -125,7 +125,7 @@ def read_nastran(content: bytes) -> meshio.Mesh:
     )
     grids = {
         any_case(name) or name: numbers[members]
-        for name, members in sets.of(_GRIDS, numbers).items()
+        for name, members in sets.places(_GRIDS, numbers).items()
     }
     return joined_mesh(numbers, places, blocks, groups, grids, sets.left_out)
 
@@ -208,7 +208,7 @@ class _Sets:
                 del words[:2]
             found.append((first, last))
 
-    def of(self, kind: str, labels: np.ndarray) -> dict[str, np.ndarray]:
+    def places(self, kind: str, labels: np.ndarray) -> dict[str, np.ndarray]:
         """Places (m,) in some ``labels`` (n,) of the members of each set of a kind."""
         places = {}
         for (name, own), ranges in self._found.items():

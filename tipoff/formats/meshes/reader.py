@@ -28,24 +28,20 @@ _ADVICE = {
 _PER_BYTE, _BESIDE = 100, 2**29
 
 
-def formats() -> list[MeshFormat]:
-    """The formats that are read."""
-    return [each for each in declared(__package__) if isinstance(each, MeshFormat)]
-
-
 def read_mesh_file(path: Path) -> meshio.Mesh:
     """The mesh in a file. Raises Unreadable, and OSError if it cannot be opened."""
-    found = of_suffix(formats(), path)
+    formats = declared(__package__, MeshFormat)
+    found = of_suffix(formats, path)
     if found is None:
         advice = _ADVICE.get(
             path.suffix.lower(), "let the mesh generator write one of these, with its groups"
         )
-        suffixes = sorted(suffix for each in formats() for suffix in each.suffixes)
+        suffixes = sorted(suffix for each in formats for suffix in each.suffixes)
         raise Unreadable(f"a mesh file ends in one of {', '.join(suffixes)}; {advice}")
     content: bytes | list[Piece]
     if found.pieces is not None:
-        content = found.pieces(path)
-        size = sum(len(piece.content) for piece in content)
+        content = pieces = found.pieces(path)
+        size = sum(len(piece.content) for piece in pieces)
     else:
         with open_input(path) as stream:
             content = utf_8(stream.read())

@@ -13,7 +13,7 @@ from pathlib import Path
 from tipoff.files import read_input
 from tipoff.formats.declared import Format
 from tipoff.formats.sections.drawn import Drawn
-from tipoff.formats.sections.paths import Polyline, closed_loops
+from tipoff.formats.sections.loops import Polyline, closed_loops
 from tipoff.units import LENGTHS_OF_FILES
 
 _SURVEY = 1200.0 / 3937.0  # m, a foot of the US survey

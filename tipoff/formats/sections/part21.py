@@ -61,7 +61,7 @@ class Instances:
             for number, text in self._texts.items()
         }
 
-    def of(self, number: Any) -> dict[str, list]:
+    def instance(self, number: Any) -> dict[str, list]:
         """Names of an instance, each with its values. Raises ValueError if it is none."""
         if not isinstance(number, Reference) or number not in self._texts:
             raise ValueError(f"a whole STEP file; {_shown(number)} is no instance of it")
@@ -73,7 +73,7 @@ class Instances:
         """Number and values of each instance with one of the ``names``, in the order of the file."""
         for number, found in self._names.items():
             if name := next((name for name in names if name in found), None):
-                values = self.of(Reference(number)).get(name)
+                values = self.instance(Reference(number)).get(name)
                 if values is not None:
                     yield Reference(number), values
 

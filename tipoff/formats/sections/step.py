@@ -20,7 +20,7 @@ import numpy as np
 from tipoff.formats.declared import Format
 from tipoff.formats.outline import Corner, outline
 from tipoff.formats.sections.drawn import Drawn
-from tipoff.formats.sections.paths import LARGEST, Polyline, closed_loops
+from tipoff.formats.sections.loops import LARGEST, Polyline, closed_loops
 from tipoff.formats.sections.step_solid import WAY_OUT, Edge, Face, Solid, read_solid
 from tipoff.units import LENGTHS_OF_FILES
 

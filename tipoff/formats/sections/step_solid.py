@@ -71,7 +71,7 @@ def read_solid(path: str | Path) -> Solid:
     file = Instances(path)
     number, values = _only_solid(file)
     _require_own_axes(file)
-    shells = file.of(value(values, 1, Reference))
+    shells = file.instance(value(values, 1, Reference))
     shell = shells.get("CLOSED_SHELL") or shells.get("OPEN_SHELL") or []
     faces = value(shell, 1, list)
     if len(faces) > _MOST_FACES:
@@ -91,7 +91,7 @@ def _only_solid(file: Instances) -> tuple[Reference, list]:
         names = [str(values[0]) if values and values[0] else "unnamed" for _, values in found]
         raise ValueError(f"one solid; the file has {len(found)}: {', '.join(names[:8])}; {WAY_OUT}")
     number, values = found[0]
-    kind = next(name for name in _SOLIDS if name in file.of(number))
+    kind = next(name for name in _SOLIDS if name in file.instance(number))
     if kind == "BREP_WITH_VOIDS":
         raise ValueError(f"an extrusion; the solid has a closed cavity; {WAY_OUT}")
     if kind in _MADE_OF_FACETS:
@@ -112,16 +112,16 @@ def _require_own_axes(file: Instances) -> None:
 
 
 def _face(file: Instances, number: Any, known: dict[int, Edge]) -> Face:
-    faces = file.of(number)
+    faces = file.instance(number)
     values = faces.get("ADVANCED_FACE") or faces.get("FACE_SURFACE") or []
-    surface = file.of(value(values, 2, Reference))
+    surface = file.instance(value(values, 2, Reference))
     edges = []
     for bound in value(values, 1, list):
-        bounds = file.of(bound)
+        bounds = file.instance(bound)
         loop = bounds.get("FACE_BOUND") or bounds.get("FACE_OUTER_BOUND") or []
-        loops = file.of(value(loop, 1, Reference))
+        loops = file.instance(value(loop, 1, Reference))
         for each in value(loops.get("EDGE_LOOP", [[], []]), 1, list):
-            oriented = file.of(each).get("ORIENTED_EDGE", [])
+            oriented = file.instance(each).get("ORIENTED_EDGE", [])
             edges.append(_edge(file, value(oriented, 3, Reference), known))
     direction, radius = None, 0.0
     name = _name(surface)
@@ -132,19 +132,19 @@ def _face(file: Instances, number: Any, known: dict[int, Edge]) -> Face:
         direction = axes[2]
         radius = value(surface[name], 2, float) if name != "PLANE" else 0.0
     elif name == "SURFACE_OF_LINEAR_EXTRUSION":
-        vector = file.of(value(surface[name], 2, Reference)).get("VECTOR", [])
+        vector = file.instance(value(surface[name], 2, Reference)).get("VECTOR", [])
         direction = _direction(file, value(vector, 1, Reference))
     return Face(name, direction, radius, tuple(edges))
 
 
 def _edge(file: Instances, number: Reference, known: dict[int, Edge]) -> Edge:
     if number not in known:
-        values = file.of(number).get("EDGE_CURVE", [])
+        values = file.instance(number).get("EDGE_CURVE", [])
         ends = np.array([_vertex(file, value(values, place, Reference)) for place in (1, 2)])
-        curve = file.of(value(values, 3, Reference))
+        curve = file.instance(value(values, 3, Reference))
         for name in _CURVES_ON_SURFACES:
             if name in curve:
-                curve = file.of(value(curve[name], 1, Reference))
+                curve = file.instance(value(curve[name], 1, Reference))
         name, centre, axis = _name(curve), None, None
         if name == "CIRCLE":
             centre, axes = _placement(file, value(curve[name], 1, Reference))
@@ -159,15 +159,15 @@ def _name(found: dict[str, list]) -> str:
 
 
 def _vertex(file: Instances, number: Reference) -> np.ndarray:
-    return _point(file, value(file.of(number).get("VERTEX_POINT", []), 1, Reference))
+    return _point(file, value(file.instance(number).get("VERTEX_POINT", []), 1, Reference))
 
 
 def _point(file: Instances, number: Reference) -> np.ndarray:
-    return _three(file.of(number).get("CARTESIAN_POINT", []))
+    return _three(file.instance(number).get("CARTESIAN_POINT", []))
 
 
 def _direction(file: Instances, number: Reference) -> np.ndarray:
-    found = _three(file.of(number).get("DIRECTION", []))
+    found = _three(file.instance(number).get("DIRECTION", []))
     length = math.hypot(*found)
     if not 0.0 < length < math.inf:
         raise ValueError(f"a whole STEP file; the direction #{number:d} has no length")
@@ -181,7 +181,7 @@ def _three(values: list) -> np.ndarray:
 
 def _placement(file: Instances, number: Reference) -> tuple[np.ndarray, np.ndarray]:
     """Origin (3,) and axes (3,3), a row each."""
-    values = file.of(number).get("AXIS2_PLACEMENT_3D", [])
+    values = file.instance(number).get("AXIS2_PLACEMENT_3D", [])
     origin = _point(file, value(values, 1, Reference))
     third = _given_or(file, values[2:3], (0.0, 0.0, 1.0))
     other = (1.0, 0.0, 0.0) if abs(third[0]) < 0.9 else (0.0, 1.0, 0.0)
@@ -203,22 +203,22 @@ def _unit(file: Instances, number: Reference) -> float | None:
     """Metres in the unit of length of the representation that has a solid; None without one."""
     for _, values in file.named("ADVANCED_BREP_SHAPE_REPRESENTATION", "SHAPE_REPRESENTATION"):
         if number in value(values, 1, list):
-            context = file.of(value(values, 2, Reference))
+            context = file.instance(value(values, 2, Reference))
             units = context.get("GLOBAL_UNIT_ASSIGNED_CONTEXT", [[]])
             for unit in value(units, 0, list):
-                if "LENGTH_UNIT" in file.of(unit):
+                if "LENGTH_UNIT" in file.instance(unit):
                     return _metres(file, unit, ())
     return None
 
 
 def _metres(file: Instances, number: Any, chain: tuple[int, ...]) -> float:
-    found = file.of(number)
+    found = file.instance(number)
     if "SI_UNIT" in found:
         prefix, name = (str(each or "").strip(".") for each in (found["SI_UNIT"] + [None] * 2)[:2])
         if name == "METRE" and prefix in _PREFIXES:
             return 10.0 ** _PREFIXES[prefix]
     if "CONVERSION_BASED_UNIT" in found and number not in chain:
-        measure = file.of(value(found["CONVERSION_BASED_UNIT"], 1, Reference))
+        measure = file.instance(value(found["CONVERSION_BASED_UNIT"], 1, Reference))
         values = next(iter(measure.values()), [])
         scale = value(values, 0, float)
         if 1e-9 < scale < 1e9:

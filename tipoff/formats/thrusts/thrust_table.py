@@ -12,7 +12,7 @@ import numpy as np
 
 from tipoff.faults import SceneError
 from tipoff.formats.declared import Format
-from tipoff.formats.instrument_table import Written, head, read_table, scale, stated, words
+from tipoff.formats.instrument_table import Written, name_and_unit, read_table, scale, stated, words
 from tipoff.formats.thrusts.record import SECTION, Choice, Record
 
 _HOUSE = ["time_s", "force_N"]
@@ -62,7 +62,9 @@ def _candidates(table: Written, kind: str, name: str | None) -> list[int]:
     if kind == "time":
         found = table.times()
     else:
-        found = [k for k, cell in enumerate(table.header) if words(head(cell, "N")[0]) & _THRUST]
+        found = [
+            k for k, cell in enumerate(table.header) if words(name_and_unit(cell, "N")[0]) & _THRUST
+        ]
     fitting = [place for place in found if _is_in(table.unit(place, _NAMES[kind]), _NAMES[kind])]
     return fitting if len(found) > 1 and fitting else found
 
