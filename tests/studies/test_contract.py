@@ -24,7 +24,7 @@ COMMANDS = [
 ]
 TEXTS = kept.texts()
 # what every result file has beside the result
-ENVELOPE = {"stage", "scene", "quantities", "made", "key", "sha256", "files", "implausible"}
+ENVELOPE = {"stage", "scene", "quantities", "made", "key", "sha256", "files", "implausible", "took"}
 
 
 def ruled(kind, path=()):

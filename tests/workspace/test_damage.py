@@ -63,7 +63,7 @@ def rates(document: dict) -> list:
 def test_a_stage_is_never_made_again_from_a_damaged_trajectory(engine, study, capsys):
     """One bit in the digits of a rate, and 99 rad/s written by another program: the run is made
     again, and the stage of that."""
-    first = runs.run(study, "highfi")
+    first = runs.run(study, "highfi").document
     assert rates(first) == [[math.degrees(RATE)] * 3] * 2
     path = study.path(first["conditions"][0]["trajectory"])
 
@@ -78,13 +78,23 @@ def test_a_stage_is_never_made_again_from_a_damaged_trajectory(engine, study, ca
     ):
         capsys.readouterr()
         damage(path)
-        again = runs.run(study, "highfi")
+        again = runs.run(study, "highfi").document
         assert rates(again) == rates(first)
         assert engine == ["phi15", "phi60"] + (number + 1) * ["phi15"]
         told = capsys.readouterr().err
         assert f"{path} is damaged or was edited: phi15 is run again" in told
         assert again["files"] != first["files"] and Trajectory.load(path).outcome.rate == [RATE] * 3
-        assert runs.run(study, "highfi") == again and "is made again" not in capsys.readouterr().err
+        kept = runs.run(study, "highfi").document
+        assert kept == again and "is made again" not in capsys.readouterr().err
+
+
+def test_a_result_tells_what_it_took(engine, study):
+    """Wall time and number of runs. Control: those of stored runs are not counted."""
+    made = runs.run(study, "highfi")
+    assert made.took["runs"] == len(engine) == 2 and made.took["wall_s"] > 0.0
+    assert runs.run(study, "highfi").took == made.took
+    study.path("highfi.json").unlink()
+    assert runs.run(study, "highfi").took["runs"] == 0
 
 
 def test_a_result_that_is_only_shown_is_not_shown_when_it_was_edited(study, capsys):

@@ -55,6 +55,11 @@ class Made(NamedTuple, Generic[_Result]):
         """Digest of everything that determines the result."""
         return self.document["key"]
 
+    @property
+    def took(self) -> dict:
+        """``wall_s`` and number of ``runs`` when the result was made; empty where not known."""
+        return self.document.get("took", {})
+
 
 def _nothing(study: Study, options: Any) -> None:
     return None

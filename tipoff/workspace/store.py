@@ -42,6 +42,7 @@ class Store:
     ):
         self.folder, self.workers = Path(folder), workers
         self.checkpoint_every, self.resume = checkpoint_every, resume
+        self.made = 0  # runs
 
     def path(self, run: Run) -> Path:
         """File of the result of ``run``."""
@@ -102,6 +103,7 @@ class Store:
         with kernel_marks.first_use(run):
             trajectory = make(run, progress, threads)
         RUNS.put(self.path(run), run.key, trajectory)
+        self.made += 1
         discard(self.checkpoint(run))
         message = f" ({trajectory.message})" if trajectory.message else ""
         board.finished(

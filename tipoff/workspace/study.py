@@ -2,12 +2,14 @@
 nothing changed.
 
 A stage writes ``out/<scene>/<stage>.json`` with the ``key`` of everything on which it depends, the
-digests of the ``files`` that it wrote, and the warnings of the scene as ``implausible``. It is made
-again if the key differs, if one of its files is missing or changed, or if the result does not match
-its digest. Readers verify all files, so a stage never uses a damaged one.
+digests of the ``files`` that it wrote, the warnings of the scene as ``implausible``, and what it
+``took``: wall time (s) and runs. It is made again if the key differs, if one of its files is missing
+or changed, or if the result does not match its digest. Readers verify all files, so a stage never
+uses a damaged one.
 """
 
 import hashlib
+import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -227,7 +229,9 @@ class Study:
             self._announce(name, "nothing changed")
             return found
         self._announce(name, self.scene.name)
+        began, runs = time.perf_counter(), self.store.made
         result, files = make()
+        took = {"wall_s": time.perf_counter() - began, "runs": self.store.made - runs}
         return _RESULTS.put(
             path,
             key,
@@ -237,6 +241,7 @@ class Study:
                 "key": key,
                 "quantities": words.QUANTITIES,
                 "implausible": implausible.of_all_conditions(self.scene),
+                "took": took,
                 **result,
                 "files": {self.relative(file): _digest(file) for file in files},
             },

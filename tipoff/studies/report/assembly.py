@@ -11,7 +11,7 @@ from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.question import Section
 from tipoff.studies.registry import sections
 from tipoff.studies.render.document import Caption, Missing, Notice, Part
-from tipoff.studies.render.table import Table
+from tipoff.studies.render.table import Column, Table
 from tipoff.studies.report import answer, inputs, template
 from tipoff.studies.report.page import Page
 from tipoff.studies.report.promises import promises, table
@@ -23,6 +23,10 @@ from tipoff.workspace.stage import Made
 _VALIDATION = (
     "Promises are checked on the runs of this page. `docs/verification_and_validation.md` has the cases "
     "with known answers, the published measurements, and what is not validated."
+)
+_TIMES = (
+    "Wall time and number of runs when the result was made; runs that were stored by then are not counted. "
+    "Compilation is included."
 )
 _EVIDENCE, _STUDIES = "Evidence", "Studies"
 _GROUPS = {
@@ -132,12 +136,15 @@ def _colophon(page: Page) -> list[Part]:
         *versions().items(),
         ("scene hash", f"`{page.scene.hash}`"),
     ]
-    keys = [
-        (f"{name}.json", f"`{found.key}`")
-        for name, found in page.results.items()
-        if isinstance(found, Made)
+    made = {name: found for name, found in page.results.items() if isinstance(found, Made)}
+    rows = [
+        (f"{name}.json", found.took.get("wall_s"), found.took.get("runs"), f"`{found.key}`")
+        for name, found in made.items()
     ]
-    return [
-        Table(("", ""), facts),
-        Table(("result file", "key: hash of scene, code and numerics"), keys),
-    ]
+    heads = (
+        "result file",
+        Column("made in", "s", ",.0f"),
+        "runs made",
+        "key: hash of scene, code and numerics",
+    )
+    return [Table(("", ""), facts), Table(heads, rows, notes=(_TIMES,))]
