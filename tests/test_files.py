@@ -8,7 +8,7 @@ import pytest
 
 from tipoff import files, scenes
 from tipoff.comparison.quantities import read_quantities
-from tipoff.formats.sections import dxf
+from tipoff.formats.sections.dxf import read_dxf
 from tipoff.lowfi.ensemble.table import TableFile
 
 
@@ -72,7 +72,7 @@ def test_readers_of_text_know_the_encodings_of_windows(tmp_path, encoding):
     assert not found.faults and found.values["time"].tolist() == [0.0, 1.0]
     pairs = "0 SECTION 2 HEADER 0 ENDSEC 0 SECTION 2 ENTITIES 0 LWPOLYLINE 90 3 70 1"
     pairs += " 10 0 20 0 10 1 20 0 10 0 20 1 0 ENDSEC 0 EOF"
-    (loop,) = dxf.loops(written("a.dxf", pairs.replace(" ", "\n") + "\n"), "m")
+    (loop,) = read_dxf(written("a.dxf", pairs.replace(" ", "\n") + "\n"), "m").loops
     assert len(loop) == 3
 
 
