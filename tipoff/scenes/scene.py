@@ -21,9 +21,9 @@ from pydantic import (
 )
 
 from tipoff.faults import Fault, SceneError, close
-from tipoff.files import content_hash
 from tipoff.mechanics.run_limits import MOST_SAMPLES
 from tipoff.scenes import (
+    inputs,
     launch,
     names,
     pads,
@@ -51,6 +51,9 @@ from tipoff.scenes.effects.thrust import ThrustTable
 from tipoff.scenes.effects.thrust_offset import ThrustOffsetTable
 from tipoff.scenes.faults import faults_of, within
 from tipoff.scenes.names import NOMINAL
+from tipoff.scenes.parts import expansion
+from tipoff.scenes.parts.body import Origin
+from tipoff.scenes.parts.buttons import ButtonTable
 from tipoff.scenes.rail import RailTable
 from tipoff.scenes.studies import StudiesTable
 from tipoff.scenes.table import MOST, Table, at_least_one, is_absent, limited
@@ -59,11 +62,9 @@ from tipoff.scenes.units import Duration
 
 CATALOG = reading.CATALOG
 _BESIDE = ("conditions", "agreement", "provenance")
-# the flight after the exit does not change the ejection, and no solver reads [studies]
-_NOT_PHYSICS = {"name", "description", "flight", "hand_over", "studies", *_BESIDE}
 
 
-class Scene(shown.Shown, launch.Timed, Table):
+class Scene(inputs.Inputs, shown.Shown, launch.Timed, Table):
     """Everything a run needs, in SI; an absent effect is None. ``replace`` makes variations.
 
     Example:
@@ -78,8 +79,13 @@ class Scene(shown.Shown, launch.Timed, Table):
     description: str = ""
     #: Longest time that is simulated. Without it a run ends when it is settled or jammed.
     duration: Duration | None = None
+    #: Point from which the places of buttons, pads, mass centre, rail and mounts are counted: the
+    #: tail (forwards) or the nose (backwards) of the payload; its mass centre where absent.
+    origin: Origin | None = Field(None, exclude=True)
     #: The rigid body that leaves the rail.
     payload: PayloadTable
+    #: Rail buttons in the slot of a T-slot rail, in place of pads.
+    buttons: Annotated[tuple[ButtonTable, ...], limited] | None = Field(None, exclude=True)
     #: The blocks on the payload that slide along the rail.
     pads: Annotated[tuple[PadTable, ...], limited, AfterValidator(at_least_one)]
     #: The elastic guide: the built-in L section, a mesh file or a CAD solid.
@@ -181,7 +187,7 @@ class Scene(shown.Shown, launch.Timed, Table):
             (12.0, True)
         """
         keys.require_shallow(overrides, f"override of {self._source}")
-        raw = keys.plain(self._raw)
+        raw = expansion.open_to(keys.plain(self._raw), overrides)
         lost = keys.apply_all(raw, overrides, Scene)
         provenance.mark(raw, overrides)
         scene, faults = _validated(raw, True)
@@ -217,48 +223,6 @@ class Scene(shown.Shown, launch.Timed, Table):
             expected = f"one of {known}{close(str(name), self.conditions)}"
             raise SceneError([Fault(self._source, "conditions", repr(name), expected)])
         return self.replace(self.conditions[name])
-
-    def given(self, key: str) -> Any:
-        """The input under a dotted ``key`` as it was written, with its unit; None without one."""
-        found: Any = self._raw
-        for part in key.split("."):
-            found = found.get(part) if isinstance(found, dict) else None
-        return found
-
-    def physics(self) -> dict:
-        """The physical inputs in SI that determine a result, without names and roles."""
-        found = self.model_dump(mode="json", exclude=_NOT_PHYSICS)
-        if self.thermal is None:
-            found["rail"]["material"].pop("expansion", None)
-        return found
-
-    def resolved(self) -> dict:
-        """Every input in SI, as written into result files.
-
-        Returns:
-            dict: tables by name; ``parse(..., bare_numbers_are_si=True)`` reads it back.
-
-        Example:
-            >>> scene = tipoff.load("tiny")
-            >>> tipoff.parse(scene.resolved(), bare_numbers_are_si=True).hash == scene.hash
-            True
-        """
-        return self.model_dump(mode="json", exclude_none=True)
-
-    @property
-    def origin(self) -> str:
-        """The name in the catalogue, or the path of the file of the scene."""
-        path = Path(self._source)
-        return path.stem if path.parent == CATALOG else self._source
-
-    @property  # a copy of the scene, and one that ``Variations`` overwrites, must not keep it
-    def hash(self) -> str:
-        """SHA-256 of the physical inputs. A file counts by its content, and a measured thrust by
-        its points, not by their paths."""
-        physics = self.physics()
-        physics["rail"] |= self.rail.contents()
-        physics["thrust"], points = self.thrust.contents()
-        return content_hash(physics, points)
 
     @property
     def warnings(self) -> list[str]:
@@ -358,10 +322,13 @@ def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faul
             raw["provenance"] = dict(keys.dotted(raw["provenance"]))
         for name, table in _tables(raw.get("conditions")):
             raw["conditions"][name] = dict(keys.dotted(table))
+    found = expansion.expand(raw, bare_numbers_are_si)
+    context = {"bare_numbers_are_si": bare_numbers_are_si}
     try:
-        return Scene.model_validate(raw, context={"bare_numbers_are_si": bare_numbers_are_si}), []
+        scene = Scene.model_validate(found.tables, context=context)
     except ValidationError as error:
-        return None, [fault[1:] for fault in faults_of(error, "")]
+        return None, found.with_faults([fault[1:] for fault in faults_of(error, "")])
+    return (None if found.faults else scene), found.faults
 
 
 def _reported(source: str, faults: _Faults) -> list[Fault]:
@@ -383,6 +350,7 @@ def _beside_faults(raw: dict, bare_numbers_are_si: bool, reported: _Faults) -> _
     found = []
     for name, table in _tables(raw.get("conditions"))[:MOST]:  # more conditions are a fault
         varied = keys.plain({key: item for key, item in raw.items() if key not in _BESIDE})
+        varied = expansion.open_to(varied, table)
         faults = keys.apply_all(varied, table, Scene) + _validated(varied, bare_numbers_are_si)[1]
         found += [
             (f"conditions.{name}.{key}", given, expected)

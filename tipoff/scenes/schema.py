@@ -40,13 +40,14 @@ def schema() -> dict:
     required = [
         name
         for name, field in Scene.model_fields.items()
-        if field.is_required() and name != "name"  # without one, that of the file
+        if field.is_required() and name not in ("name", "pads")  # without a name, that of the file
     ]
+    whole = [{"required": [*required, pads]} for pads in ("pads", "buttons")]
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "tipoff scene",
         **found,
-        "anyOf": [{"required": required}, {"required": ["extends"]}],
+        "anyOf": [*whole, {"required": ["extends"]}],
     }
 
 

@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, ValidationInfo, field_validator
+from pydantic import AfterValidator, Field, ValidationInfo, field_validator
 
 from tipoff.mechanics.run_limits import MOST_SAMPLES
 from tipoff.scenes.body import InertiaTensor
@@ -50,6 +50,13 @@ class PayloadTable(Table):
     #: Outer size along x, y and z. It is used for plausibility and, without flight.body, for
     #: the clearance in flight.
     size: tuple[PositiveLength, PositiveLength, PositiveLength] | None = None
+    #: Length of a body of which only this, diameter and mass are known: its size and, where absent,
+    #: its inertia follow.
+    length: PositiveLength | None = Field(None, exclude=True)
+    #: Diameter of such a body. A rail with buttons lies below it.
+    diameter: PositiveLength | None = Field(None, exclude=True)
+    #: Place of the mass centre, from the origin of the scene.
+    mass_centre: NonNegativeLength | None = Field(None, exclude=True)
 
 
 class PadTable(Table):

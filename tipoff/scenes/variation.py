@@ -16,17 +16,20 @@ from pydantic.fields import FieldInfo
 from tipoff.scenes import overrides as keys
 from tipoff.scenes import unchanged
 from tipoff.scenes.effects.registry import EFFECTS
+from tipoff.scenes.parts import expansion
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.table import Table
 
 _TABLES = {
     "payload",
+    "buttons",
     "pads",
     "rail",
     "thrust",
     "output",
     *(effect.key for effect in EFFECTS if "." not in effect.key),
 }
+_FREE = {"thrust_offset", "mass_offset", "initial"}  # no part reads or writes them
 _CONTEXT = {"bare_numbers_are_si": True}
 
 
@@ -91,13 +94,25 @@ class Variations:
         changed = dict.fromkeys(key.partition(".")[0] for key in row)
         if not changed.keys() <= _TABLES:
             return None
+        with_parts = expansion.has_parts(self.scene._raw)
         raw = {
-            name: keys.plain(self.scene._raw[name]) for name in changed if name in self.scene._raw
+            name: keys.plain(table)
+            for name, table in self.scene._raw.items()
+            if with_parts or name in changed
         }
-        if keys.apply_all(raw, row, Scene):
+        if ("pads" in changed and "buttons" in raw) or keys.apply_all(raw, row, Scene):
             return None
+        expanded = raw
+        if with_parts:
+            before, after = (expansion.expand(each, True) for each in (self.scene._raw, raw))
+            if after.faults:
+                return None
+            expanded = after.tables
+            changed |= dict.fromkeys(
+                name for name in _TABLES if expanded.get(name) != before.tables.get(name)
+            )
         try:
-            tables = {name: self._table(name, raw) for name in changed}
+            tables = {name: self._table(name, expanded) for name in changed}
         except (ValidationError, KeyError):
             return None
         found = self.scene.model_copy(update=tables)
@@ -128,6 +143,10 @@ class Variations:
     def _leaves(self, names: tuple[str, ...], scene: Scene) -> tuple[Scene, list[_Leaf]] | None:
         """``scene``, a copy to be overwritten, and its numbers under ``names``; None if one of them
         is not a free number."""
+        if expansion.has_parts(scene._raw) and not _FREE.issuperset(
+            name.partition(".")[0] for name in names
+        ):
+            return None
         leaves = []
         for name in names:
             *path, last = name.split(".")

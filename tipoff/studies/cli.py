@@ -66,6 +66,14 @@ def scenes(
             "--show", metavar="NAME", help="Print the file of this scene, for a changed copy."
         ),
     ] = None,
+    pads: Annotated[
+        bool,
+        typer.Option(
+            "--pads",
+            help="With --show NAME or FILE.toml: write out what follows from its buttons, its origin and its "
+            "body, as if written by hand.",
+        ),
+    ] = False,
     schema: Annotated[
         bool,
         typer.Option(
@@ -79,6 +87,7 @@ def scenes(
     """List the scenes of the catalogue: name, number of conditions, description.
 
       tipoff scenes --show reference > my_launcher.toml
+      tipoff scenes --show my_rocket.toml --pads
       tipoff scenes --schema > tipoff.schema.json
 
     An editor with Even Better TOML or taplo uses the schema if a file begins with the line
@@ -86,6 +95,7 @@ def scenes(
     """
 
     def work() -> Output:
+        from tipoff import toml
         from tipoff.faults import Fault, SceneError, close
         from tipoff.scenes import catalog, load
         from tipoff.scenes.scene import CATALOG
@@ -97,6 +107,13 @@ def scenes(
             return Output(
                 {"schema": rules()}, lambda found: [json.dumps(found["schema"], indent=1)]
             )
+        if pads:
+            if show is None:
+                raise SceneError([Fault("--pads", "option", "no --show", "a scene to write out")])
+            text = toml.dumps(load(show).written_out())
+            if not json_:
+                print(text, end="")
+            return Output({"scene": show, "file": text})
         if show is not None:
             if show not in catalog():
                 known = catalog()

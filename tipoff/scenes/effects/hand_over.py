@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tipoff.faults import Fault, SceneError
+from tipoff.scenes.parts import body
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Angle, Inclination, Length
 
@@ -52,7 +53,10 @@ def standing(scene: Mapping[str, Any]) -> Standing:
     Raises SceneError for an inclination that differs from that of gravity.
     """
     table = {key: value for key, value in scene.get("hand_over", {}).items() if value is not None}
-    gravity = np.array([scene.get("gravity", {}).get(axis, 0.0) for axis in "xyz"])
+    stated = scene.get("gravity", {})
+    gravity = np.array([stated.get(axis, 0.0) for axis in "xyz"])
+    if (angle := stated.get("inclination")) is not None:
+        gravity += body.gravity(angle)
     size, assumed = float(np.linalg.norm(gravity)), []
     up = -gravity / size if size > 0.0 else None
     inclination = table.get("inclination")

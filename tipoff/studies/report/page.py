@@ -76,7 +76,7 @@ class Page:
 
     def command(self, name: str) -> str:
         """The command ``name`` for this scene and folder, as the user would type it."""
-        scene, out = map(shlex.quote, (self.scene.origin, str(self.folder.parent)))
+        scene, out = map(shlex.quote, (self.scene.source, str(self.folder.parent)))
         return f"{program(name)} {name} --scene {scene} --out {out}"
 
     def figure(self, chart: Chart | Picture, words: str) -> Markup:

@@ -1,0 +1,191 @@
+"""Buttons, origin and body of a rocket are the pads, places and inertia that they stand for."""
+
+import tomllib
+
+import pytest
+from typer.testing import CliRunner
+
+import tipoff.toml
+from tipoff.scenes import SceneError, load, parse, provenance
+from tipoff.scenes.variation import Variations
+from tipoff.studies.cli import app
+
+ROCKET = tomllib.loads("""
+name = "mine"
+origin = "tail"
+contact.law = "impact"
+gravity.inclination = "84 deg"
+initial.settled = true
+friction = { static = 0.2, dynamic = 0.2 }
+thrust = { kind = "constant", force = "3 kN", duration = "3 s", reaction = "exhaust" }
+payload = { mass = "24 kg", length = "3.7 m", diameter = "152 mm", mass_centre = "1.71 m" }
+rail = { start = "0 m", end = "11 m", mounts = [{ start = "1 m", end = "1.1 m" }] }
+[[buttons]]
+place = "0.305 m"
+profile = "1515"
+material = "acetal"
+[[buttons]]
+place = "1.646 m"
+""")
+# the button of the scene rocket_rail, whose pads were written by hand: place across, normal, width (mm)
+BY_HAND = [
+    ((5.75, -43.0), "-z", 3.0),
+    ((-5.75, -43.0), "-z", 3.0),
+    ((5.75, -48.0), "+z", 3.0),
+    ((-5.75, -48.0), "+z", 3.0),
+    ((3.75, -45.5), "+y", 4.0),
+    ((-3.75, -45.5), "-y", 4.0),
+]
+
+
+def rocket(**tables):
+    return parse({**ROCKET, **tables})
+
+
+def test_buttons_of_the_catalogue_are_the_pads_that_were_written_by_hand():
+    scene = load("rocket_rail")
+    wanted = [
+        ((x, 1e-3 * y, 1e-3 * z), (normal,), 8e-3, 1e-3 * width)
+        for x in (-0.65, 0.0)
+        for (y, z), normal, width in BY_HAND
+    ]
+    found = [(pad.position, pad.normals, pad.length, pad.width) for pad in scene.pads]
+    assert len(found) == len(wanted)
+    for pad, other in zip(found, wanted):
+        assert pad[1] == other[1]
+        assert (*pad[0], *pad[2:]) == pytest.approx((*other[0], *other[2:]), rel=1e-15, abs=1e-18)
+    assert scene.rail.at == pytest.approx((0.0, -63.25e-3), rel=1e-15)
+    assert scene.contact.gaps() == (0.25e-3, 0.25e-3, 0.25e-3)
+
+
+def test_places_are_counted_from_the_tail_or_from_the_nose():
+    """Both are the same rocket. The nozzle is at the tail."""
+    scene = rocket()
+    assert (scene.rail.start, scene.rail.end) == pytest.approx((-1.71, 9.29), abs=1e-12)
+    assert scene.rail.mounts[0].start == pytest.approx(1.0, abs=1e-12)
+    assert sorted({pad.position[0] for pad in scene.pads}) == pytest.approx([-1.405, -0.064])
+    assert scene.thrust.arm == pytest.approx(1.71, abs=1e-12)
+    nose = rocket(
+        origin="nose",
+        payload={**ROCKET["payload"], "mass_centre": "1.99 m"},
+        rail={"start": "3.7 m", "end": "-7.3 m", "mounts": [{"start": "2.7 m", "end": "2.6 m"}]},
+        buttons=[{**ROCKET["buttons"][0], "place": "3.395 m"}, {"place": "2.054 m"}],
+    )
+    for name in ("pads", "rail", "thrust"):
+        assert getattr(nose, name) == getattr(scene, name)
+
+
+def test_a_body_of_few_numbers_is_a_slender_cylinder_and_says_so():
+    scene = rocket()
+    inertia = scene.payload.inertia
+    assert inertia.xx == pytest.approx(0.5 * 24.0 * 0.076**2, rel=1e-12)
+    assert inertia.yy == pytest.approx(24.0 * (3 * 0.076**2 + 3.7**2) / 12.0, rel=1e-12)
+    for key in ("payload.inertia.yy", "pads.3.width", "contact.stiffness", "rail.material.density"):
+        assert provenance.of(scene.provenance, key).startswith("assumed"), key
+    assert provenance.of(scene.provenance, "payload.mass") is None
+
+
+@pytest.mark.parametrize(
+    "change, moved",
+    [
+        ({"buttons.0.neck_to_slot": 0.3e-3}, lambda s: s.contact.gaps()[1] == 0.3e-3),
+        ({"buttons.0.neck_to_slot": 0.3e-3}, lambda s: s.rail.clearance == 0.3e-3),
+        ({"buttons.0.head_to_lip": 0.5e-3}, lambda s: s.rail.at[1] < rocket().rail.at[1] - 2e-4),
+        ({"buttons.1.place": 1.7}, lambda s: s.pads[6].position[0] == pytest.approx(-0.01)),
+        ({"payload.mass_centre": 1.8}, lambda s: s.rail.end == pytest.approx(9.2)),
+        (
+            {"payload.mass": 48.0},
+            lambda s: s.payload.inertia.yy > 1.99 * rocket().payload.inertia.yy,
+        ),
+        ({"gravity.inclination": 1.5}, lambda s: s.gravity.z > rocket().gravity.z + 0.3),
+        ({"pads.3.length": 5e-3}, lambda s: [p.length for p in s.pads[2:5]] == [8e-3, 5e-3, 8e-3]),
+        ({"contact": None}, lambda s: s.contact is None),
+    ],
+)
+def test_what_hangs_on_a_part_moves_with_it(change, moved):
+    scene = rocket().replace(change)
+    assert moved(scene) and not moved(rocket())
+    assert Variations(rocket()).of(change).hash == scene.hash
+    assert parse(scene.resolved(), bare_numbers_are_si=True).hash == scene.hash
+    condition = parse({**ROCKET, "conditions": {"one": change}}, bare_numbers_are_si=True)
+    restored = parse(condition.resolved(), bare_numbers_are_si=True)
+    assert restored.condition("one").hash == scene.hash
+
+
+def test_variations_of_one_key_after_another():
+    varied = Variations(rocket())
+    for mass in (23.0, 24.0, 25.0):
+        for row in ({"payload.mass": mass}, {"thrust_offset.misalignment.axial": 1e-3 * mass}):
+            row |= {"thrust_offset.misalignment.radial": 0.0}
+            assert varied.of(row).hash == rocket().replace(row).hash
+
+
+def test_parts_written_out_are_the_same_scene_by_hand():
+    scene = rocket()
+    by_hand = scene.written_out()
+    assert len(by_hand["pads"]) == 12 and not {"buttons", "origin"} & set(by_hand)
+    assert parse(by_hand).hash == scene.hash
+
+
+@pytest.mark.parametrize(
+    "tables, keys",
+    [
+        ({"pads": [{"position": ["0 m"] * 3, "normals": ["+y"]}]}, ["pads"]),
+        ({"buttons": []}, ["buttons"]),
+        (
+            {"buttons": [{"place": "1 kg", "profile": "2020"}]},
+            ["buttons.0.place", "buttons.0.profile"],
+        ),
+        ({"buttons": [{"place": "1 m"}]}, ["rail.section"]),
+        (
+            {
+                "buttons": [
+                    {"place": "0.3 m", "profile": "1515", "neck": "9 mm", "head": "30 mm"},
+                    {"place": "1 m", "neck_height": "1 mm"},
+                ]
+            },
+            ["buttons.0.neck", "buttons.0.head", "buttons.1.neck_height", "buttons.1.head_to_lip"],
+        ),
+        (
+            {
+                "buttons": [
+                    {"place": "1 m", "profile": "1515", "neck": "7 mm", "neck_to_slot": "1 mm"}
+                ]
+            },
+            ["buttons.0.neck_to_slot"],
+        ),
+        (
+            {"payload": {"mass": "1 kg", "length": "1 m"}},
+            ["payload.mass_centre", "payload.diameter"],
+        ),
+        ({"gravity": {"inclination": "84 deg", "x": "1 m/s**2"}}, ["gravity.x"]),
+        ({"origin": "middle"}, ["origin"]),
+    ],
+)
+def test_every_fault_of_a_part_is_listed(tables, keys):
+    with pytest.raises(SceneError) as caught:
+        rocket(**tables)
+    found = [fault.key for fault in caught.value.faults]
+    assert set(keys) <= set(found), found
+    assert len(found) == len(set(found))
+
+
+def test_a_mass_centre_without_an_origin_is_refused():
+    tables = {key: value for key, value in ROCKET.items() if key != "origin"}
+    with pytest.raises(SceneError, match="payload.mass_centre.*origin"):
+        parse(tables)
+
+
+def test_the_command_prints_the_pads_of_a_scene(tmp_path):
+    """As a file that is the same scene, and of a file of the user too."""
+    found = CliRunner().invoke(app, ["scenes", "--show", "rocket_rail", "--pads"])
+    assert found.exit_code == 0, found.output
+    raw, own = tomllib.loads(found.stdout), load("rocket_rail")
+    assert len(raw["pads"]) == 12 and "buttons" not in raw and raw["rail"]["at"][1] == "-63.25 mm"
+    assert parse(raw).hash == own.hash
+    path = tmp_path / "mine.toml"
+    path.write_text(tipoff.toml.dumps(ROCKET))
+    found = CliRunner().invoke(app, ["scenes", "--show", str(path), "--pads"])
+    assert parse(tomllib.loads(found.stdout)).hash == rocket().hash
+    wrong = CliRunner().invoke(app, ["scenes", "--pads"])
+    assert wrong.exit_code == 2 and "--show" in wrong.stderr
