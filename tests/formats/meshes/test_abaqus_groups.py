@@ -35,7 +35,7 @@ CASES = {
     "surfaces of nodes": "*NSET, NSET=held\n"
     + listed("mount")
     + "*SURFACE, TYPE=NODE, NAME=mount\nheld, 1.\n*SURFACE, NAME=contact, TYPE=NODE\n"
-    + "\n".join(map(str, NODES["contact"])),
+    + "\n".join([*map(str, NODES["contact"]), ""]),
     "sets of nodes and of the solids beside them": "*NSET, NSET=mount\n"
     + listed("mount")
     + "*ELSET, ELSET=mount, GENERATE\n1, 8, 1\n"

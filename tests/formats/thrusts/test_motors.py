@@ -147,6 +147,7 @@ def test_several_motors_without_a_name_are_listed(tmp_path):
         (M1670.replace("0.5 1950", "0.5 -1950"), "of a motor that are not negative (line 7)"),
         (M1670.replace("0.2 1800", "0.15 1800\n0.15 1700"), "two rows for a jump (line 7)"),
         ("M1670-BS 75 757 0 3.101 5.231 CTI\n", "at least two different times"),
+        (M1670.partition("530")[0] + "5", "(line 14: the last one has a thrust and no end"),
     ],
 )
 def test_rasp_files_that_cannot_be_are_refused(tmp_path, text, words):

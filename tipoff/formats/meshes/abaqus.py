@@ -16,7 +16,7 @@ import meshio
 import numpy as np
 
 from tipoff.formats.meshes.abaqus_groups import ROOT, Body, Model, Reference, gathered
-from tipoff.formats.meshes.blocks import MeshFormat, Unreadable, decoded, real, whole
+from tipoff.formats.meshes.blocks import MeshFormat, Unreadable, decoded, real, require_end, whole
 
 # Keywords that make or move nodes or elements in ways that are not read here.
 _MAKERS = {
@@ -106,8 +106,9 @@ def _keyword(header: str, line: int) -> _Keyword:
 
 def read_abaqus(content: bytes) -> meshio.Mesh:
     """The mesh in the ``content`` of a file. Raises Unreadable."""
-    model = Model()
-    for keyword in _keywords(decoded(content)):
+    model, text = Model(), decoded(content)
+    require_end(text, ("*",))
+    for keyword in _keywords(text):
         _take(model, keyword)
     if not any(body.labels for body in model.bodies.values()):
         raise Unreadable("no *NODE, which an input file of Abaqus has")

@@ -41,6 +41,17 @@ def decoded(content: bytes) -> str:
     return content.decode("utf-8-sig", "replace")
 
 
+def require_end(text: str, marks: tuple[str, ...], first: int = 1) -> None:
+    """Raise Unreadable if the last line of a ``text`` has no end, because its last number may be cut. Lines
+    that begin with one of the ``marks`` are no data; ``first`` is the number of the first line."""
+    last = text[text.rfind("\n") + 1 :]
+    if last.strip() and not last.startswith(marks):
+        raise Unreadable(
+            f"line {first + text.count(chr(10))}: the last line has no end, so its last number may be cut; "
+            "end the line if the file is whole"
+        )
+
+
 def whole(text: str, line: int) -> int:
     """The integer in a field. Raises Unreadable."""
     try:

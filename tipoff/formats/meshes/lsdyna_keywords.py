@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from tipoff.formats.meshes.blocks import Unreadable, decoded
+from tipoff.formats.meshes.blocks import Unreadable, decoded, require_end
 from tipoff.formats.meshes.lsdyna_includes import Piece
 
 STANDARD, I10, LONG = "standard", "i10", "long"
@@ -73,7 +73,8 @@ def named(file: str) -> Iterator[None]:
 
 def _of_piece(piece: Piece, form: str) -> Iterator[Keyword]:
     current: Keyword | None = None
-    for number, line in enumerate(decoded(piece.content).splitlines(), start=piece.first):
+    text = decoded(piece.content)
+    for number, line in enumerate(text.splitlines(), start=piece.first):
         if line.startswith("$"):
             if current is not None:
                 current.comments.append(line.strip("$# "))
@@ -100,5 +101,6 @@ def _of_piece(piece: Piece, form: str) -> Iterator[Keyword]:
                 f"line {number}: *{name} is not read; write one file with all nodes and elements"
             )
         current = Keyword(name, _MARKS.get(found[2], form), [], number, [])
+    require_end(text, ("*", "$"), piece.first)
     if current is not None:
         yield current

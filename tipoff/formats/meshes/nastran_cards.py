@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from tipoff.formats.meshes.blocks import Unreadable
+from tipoff.formats.meshes.blocks import Unreadable, require_end
 
 # A card with a number, which text before the bulk data, such as TITLE = rail 2, is not.
 _FREE = re.compile(r"\s*[A-Za-z]\w*\*?\s+\d+(\s[^=]*)?$")
@@ -28,7 +28,8 @@ class Card(NamedTuple):
 
 
 def cards(text: str) -> Iterator[Card]:
-    """Cards of the bulk data. Raises Unreadable for a continuation without a card."""
+    """Cards of the bulk data. Raises Unreadable for a continuation without a card and for a
+    last card that may be cut."""
     lines = text.splitlines()
     begin = next(
         (place for place, line in enumerate(lines) if line.upper().split() == ["BEGIN", "BULK"]), -1
@@ -59,6 +60,8 @@ def cards(text: str) -> Iterator[Card]:
                 raise Unreadable(f"line {number}: INCLUDE is not read; put all cards in the file")
             current, comments = Card(name, fields, number, comments), []
         tail = last.lstrip("+*").strip()
+    else:  # no ENDDATA
+        require_end(text, ("$",))
     if current is not None:
         yield current
 

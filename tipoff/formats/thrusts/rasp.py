@@ -68,6 +68,11 @@ def _motors(data: bytes) -> list[_Motor]:
             )
         else:
             wrong.append(f"line {number}: {line[:80]!r}")
+    if found and found[-1].force and found[-1].force[-1] != 0.0 and data[-1:] not in b"\r\n":
+        raise ValueError(
+            f"a whole RASP file (line {found[-1].lines[-1]}: the last one has a thrust and no end, so it may "
+            f"be cut); {SECTION}"
+        )
     if wrong:
         more = f" and {len(wrong) - _SHOWN} more lines" if len(wrong) > _SHOWN else ""
         raise ValueError(
