@@ -57,7 +57,7 @@ def new(
         ),
     ] = None,
     deployer: Annotated[
-        Literal["3u"] | None,
+        Literal["1u", "1.5u", "2u", "3u", "6u", "12u", "16u"] | None,
         typer.Option(
             "--deployer",
             help="Write a CubeSat of this size in a deployer with a spring, instead of a launcher. Takes "
@@ -69,7 +69,8 @@ def new(
         typer.Option(
             "--rocket",
             help="Write a rocket with two buttons in the slot of a T-slot rail, instead of a launcher. Takes "
-            "--mass, --clearance and --thrust-curve for its motor.",
+            "--mass, --size for its length and diameter, --rail-length, --clearance and --thrust-curve for its "
+            "motor.",
         ),
     ] = False,
     json_: Json = False,
@@ -136,18 +137,24 @@ def _from_catalogue(
 ) -> str:
     """The scene of a ``kind`` of the catalogue; files that it names are written beside ``file``. Raises
     SceneError, every fault listed."""
+    import tomllib
+
     from tipoff.faults import SceneError
     from tipoff.files import write_text
-    from tipoff.studies.new_scene import from_catalogue, template
+    from tipoff.studies.new_scene import from_catalogue, rocket, template
 
     like = from_catalogue.KINDS[kind]
     beside = [option for option, value in (given | others).items() if value is not None]
     numbers = {
-        option: quantity(_option_name(option), given[option], _ASKED[option][0], _ASKED[option][2])
+        option: number
         for option in beside
         if option in like.quantities
+        and (number := quantity(_option_name(option), given[option], *_ASKED[option][::2]))
+        is not None
     }
-    wrong = [one for one in beside if one not in numbers]
+    is_rocket = kind == "rocket"
+    wrong = [one for one in beside if one not in numbers and not (is_rocket and one == "size")]
+    size = _length_and_diameter(given["size"]) if is_rocket and given["size"] else None
     curve = None
     if thrust_curve is not None and not like.takes_curve:
         wrong.append("thrust_curve")
@@ -157,9 +164,15 @@ def _from_catalogue(
         curve = {"file": os.path.relpath(thrust_curve.resolve(), file.parent.resolve())}
         if begin := template.clock_time(thrust_curve):
             curve["ignition"] = begin
-    text = from_catalogue.text(file.stem, like, numbers, curve, wrong)
+    from_catalogue.require(like, numbers, wrong)
+    text = (
+        rocket.text(file.stem, numbers, size, curve)
+        if is_rocket
+        else from_catalogue.text(file.stem, like, numbers)
+    )
     beside_it = {} if curve else from_catalogue.files(like)
-    if errors := from_catalogue.errors(like, numbers):
+    varied = numbers if is_rocket else from_catalogue.numbers(like, numbers, tomllib.loads(text))
+    if errors := rocket.errors(numbers) if is_rocket else from_catalogue.errors(like, varied):
         beside_it[from_catalogue.errors_file(file.stem)] = errors
     if not file.exists():
         for name, content in beside_it.items():
@@ -206,6 +219,19 @@ def _next(found: dict) -> list[str]:
         f"  tipoff ensemble --scene {file}    # with random errors of thrust and mass",
         f"  tipoff report --scene {file}      # beside finite elements, on one page",
     ]
+
+
+def _length_and_diameter(text: str) -> tuple[float, float]:
+    """Length and diameter (m) of a rocket from its size. Raises SceneError."""
+    from tipoff.faults import Fault, SceneError
+
+    example = "1.6 m, 80 mm"
+    found = [quantity("--size", part.strip(), "m", "80 mm") for part in text.split(",")]
+    sides = [side for side in found if side is not None and side > 0.0]
+    if len(sides) != len(found) or len(sides) not in (2, 3) or sides[1] != sides[-1]:
+        expected = f'a length and a diameter, for example "{example}"'
+        raise SceneError([Fault("--size", "value", text, expected)])
+    return sides[0], sides[1]
 
 
 def _numbers(given: dict[str, str | None], thrust_curve: Path | None, pads: int | None):

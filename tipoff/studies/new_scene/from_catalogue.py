@@ -1,11 +1,12 @@
 """A commented scene file that is a scene of the catalogue with its comments, and with the given numbers
-in place of its own: a CubeSat in a deployer, or a rocket on a rail.
+in place of its own: a CubeSat in a deployer. A given mass is that of a homogeneous box.
+A rocket has a text of its own (``rocket``), and the motor and the errors of the catalogue.
 
-A given mass of a CubeSat is that of a homogeneous box; the inertia of a rocket is in proportion to it.
 The random errors of the catalogue are about its own numbers, so a scene with other ones gets a file of its
 own, with those errors in proportion.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,6 +17,8 @@ from tipoff.faults import Fault, SceneError
 from tipoff.files import read_input
 from tipoff.scenes import overrides
 from tipoff.scenes.scene import CATALOG, load
+from tipoff.studies.new_scene import deployer
+from tipoff.units import to_si
 
 GIVEN = "given to tipoff new"
 _LEVELS = {"mean", "sd", "low", "high", "value"}  # of a distribution, with a unit
@@ -24,7 +27,7 @@ _LEVELS = {"mean", "sd", "low", "high", "value"}  # of a distribution, with a un
 class Quantity(NamedTuple):
     """What an option changes."""
 
-    keys: tuple[str, ...]  # of the scene; with "-" in front for the negative value
+    keys: tuple[str, ...]  # of the scene
     unit: str
     size: float  # of the unit in SI
 
@@ -50,73 +53,79 @@ def _box(mass: float, payload) -> dict[str, float]:
     }
 
 
-def _in_proportion(mass: float, payload) -> dict[str, float]:
-    """Those of the table, in proportion to its mass."""
-    share = mass / float(payload["mass"].removesuffix(" kg"))
-    return {
-        axis: share * float(moment.removesuffix(" kg*m**2"))
-        for axis, moment in payload["inertia"].items()
-    }
-
-
 _MASS = Quantity(("payload.mass",), "kg", 1.0)
+_CLEARANCE = Quantity(("contact.clearance",), "mm", 1e-3)
 KINDS = {
-    "3u": Kind(
-        "--deployer 3u",
-        "cubesat_3u",
-        {
-            "mass": _MASS,
-            "clearance": Quantity(("contact.clearance",), "mm", 1e-3),
-            "thrust": Quantity(("thrust.springs.0.preload",), "N", 1.0),
-        },
-        takes_curve=False,
-        inertia=_box,
-    ),
+    **{
+        size: Kind(
+            f"--deployer {size}",
+            "cubesat_3u",
+            {
+                "mass": _MASS,
+                "clearance": _CLEARANCE,
+                "thrust": Quantity(("thrust.springs.0.preload",), "N", 1.0),
+            },
+            takes_curve=False,
+            inertia=_box,
+        )
+        for size in deployer.SIZES
+    },
     "rocket": Kind(
         "--rocket",
         "rocket_rail",
         {
             "mass": _MASS,
-            "clearance": Quantity(("contact.clearance", "-initial.position.z"), "mm", 1e-3),
+            "clearance": _CLEARANCE,
+            "rail_length": Quantity(("rail.end",), "m", 1.0),
         },
         takes_curve=True,
-        inertia=_in_proportion,
+        inertia=_box,
     ),
 }
 
 
-def text(
-    name: str,
-    kind: Kind,
-    given: Mapping[str, float | None],
-    thrust_curve: Mapping[str, str] | None = None,
-    others: Sequence[str] = (),
-) -> str:
-    """The scene as TOML for a ``kind``, with the ``given`` numbers (SI) by name of the option and the keys
-    of ``[thrust]`` of its ``thrust_curve``; the others are those of the catalogue. Raises SceneError for names of
-    ``others`` that are given, and for a number that is not above zero."""
+def require(kind: Kind, given: Mapping[str, float], others: Sequence[str]) -> None:
+    """Raise SceneError for names of ``others`` that are given, and for a number that is not above zero."""
+    if faults := [*_of_others(kind, others), *_of_numbers(given)]:
+        raise SceneError(faults)
+
+
+def text(name: str, kind: Kind, given: Mapping[str, float]) -> str:
+    """The scene as TOML for a ``kind``, with the ``given`` numbers (SI) by name of the option; the others
+    are those of the catalogue."""
     document = tomlkit.parse((CATALOG / f"{kind.scene}.toml").read_text(encoding="utf-8"))
     document["name"] = name
     document["description"] = f"Made by tipoff new {kind.option}."
-    stated = {option: value for option, value in given.items() if value is not None}
-    if faults := [*_of_others(kind, others), *_of_numbers(stated)]:
-        raise SceneError(faults)
-    if "mass" in stated:
-        for axis, moment in kind.inertia(stated["mass"], document["payload"]).items():
+    form = kind.option.rpartition(" ")[2]
+    if form != "3u":
+        deployer.resize(document, form, given.get("mass"))
+        document["description"] = f"A {form.upper()} CubeSat in a deployer with a spring."
+    if "mass" in given or form != "3u":
+        mass = float(document["payload"]["mass"].removesuffix(" kg"))
+        mass = given.get("mass", mass)
+        for axis, moment in kind.inertia(mass, document["payload"]).items():
             _put(document, f"payload.inertia.{axis}", f"{moment:.6g} kg*m**2")
-    for option, value in stated.items():
+    for option, value in given.items():
         keys, unit, size = kind.quantities[option]
         for key in keys:
-            sign = "-" if key.startswith("-") else ""
-            _put(document, key.removeprefix("-"), f"{sign}{value / size:.6g} {unit}")
+            _put(document, key, f"{value / size:.6g} {unit}")
         document["provenance"][keys[0]] = GIVEN
-    if errors(kind, given) is not None:
+    if errors(kind, numbers(kind, given, document)) is not None:
         document["studies"]["errors"] = errors_file(name)
-    if thrust_curve is not None:
-        for entry, own in thrust_curve.items():
-            _put(document, f"thrust.{entry}", own)
-        document["provenance"]["thrust"] = GIVEN
     return tomlkit.dumps(document).replace(f"--scene {kind.scene} ", f"--scene {name}.toml ")
+
+
+def numbers(kind: Kind, given: Mapping[str, float], document) -> dict[str, float]:
+    """The ``given`` numbers, and those of a ``document`` that differ from the scene of its ``kind``."""
+    found, scene = {}, load(kind.scene)
+    for option, (keys, _, _) in kind.quantities.items():
+        part = document
+        for name in keys[0].split("."):
+            part = part[int(name) if name.isdecimal() else name]
+        own = to_si(str(part), overrides.unit(type(scene), keys[0]) or "")
+        if option in given or not math.isclose(own, overrides.held(scene, keys[0]), rel_tol=1e-9):
+            found[option] = own
+    return found
 
 
 def errors_file(name: str) -> str:
@@ -124,7 +133,7 @@ def errors_file(name: str) -> str:
     return f"{name}_errors.toml"
 
 
-def errors(kind: Kind, given: Mapping[str, float | None]) -> str | None:
+def errors(kind: Kind, given: Mapping[str, float]) -> str | None:
     """The random errors of the catalogue with those about ``given`` numbers (SI) in proportion to them;
     None if none is about one of these."""
     scene = load(kind.scene)
@@ -133,8 +142,8 @@ def errors(kind: Kind, given: Mapping[str, float | None]) -> str | None:
     document = tomlkit.parse(path.read_text(encoding="utf-8"))
     changed = False
     for option, value in given.items():
-        key = kind.quantities[option].keys[0] if value is not None else ""
-        if value is not None and key in document["vary"]:
+        key = kind.quantities[option].keys[0]
+        if key in document["vary"]:
             table, share = document["vary"][key], value / float(overrides.held(scene, key))
             for name in _LEVELS & set(table):
                 number, unit = table[name].split(" ", 1)

@@ -1,0 +1,136 @@
+"""A scene of a rocket on its rail from a few numbers, in the words of its hardware.
+
+Without numbers it is a rocket like that of the scene ``rocket_rail``. Other sizes keep its proportions:
+the mass centre at 0.47 of the length, one button there and one at 0.06.
+"""
+
+import math
+from collections.abc import Mapping
+
+import tomlkit
+
+from tipoff.files import read_input
+from tipoff.scenes.scene import CATALOG
+from tipoff.studies.new_scene import from_catalogue
+
+_CENTRE, _REAR = 0.46875, 0.0625  # of the length, as on the scene rocket_rail
+_MOUNT, _SPAN = 0.06, 1.5  # m: length of a clamp, and at most between two of them
+_INCLINATION, _ERROR = 85.0, 0.5  # deg
+
+_TEXT = """\
+# A rocket with two rail buttons. Places count from its tail: write yours. provenance says what is given and assumed.
+# "tipoff scenes --show {name}.toml --pads" writes out pads, profile, inertia and all else that follows.
+name = {named}
+origin = "tail"
+gravity = {{ inclination = "{inclination:g} deg" }}  # of the rail
+initial = {{ settled = true }}  # the rocket lies on the rail
+contact = {{ law = "impact" }}  # the rest follows from the material of the buttons
+friction = {{ static = 0.2, dynamic = 0.2 }}
+thrust_offset = {{ misalignment = {{ axial = "0.1 deg", radial = "0 deg" }} }}
+thrust = {{ kind = "measured", {curve}, reaction = "exhaust" }}  # the nozzle is at the tail, or state its arm
+output = {{ interval = "0.5 ms" }}
+studies = {{ errors = {errors}, element_size = "{element}", rail_modes = 8 }}
+provenance = {{ {sources} }}
+[payload]
+mass = "{mass:.6g} kg"
+length = "{length:.6g} m"
+diameter = "{diameter:.6g} mm"
+mass_centre = "{centre:.4g} m"
+[[buttons]]
+place = "{rear:.4g} m"
+profile = "4040 slot 8"  # or 1010, 1515; or neck, neck_height, head and flange of your button
+material = "acetal"  # or nylon, aluminium{play}
+[[buttons]]
+place = "{centre:.4g} m"
+[rail]
+start = "0 m"
+end = "{rail:.6g} m"
+mounts = [{mounts}]
+"""
+
+
+def text(
+    name: str,
+    given: Mapping[str, float],
+    size: tuple[float, float] | None,
+    thrust_curve: Mapping[str, str] | None,
+) -> str:
+    """The scene as TOML with the ``given`` numbers (SI) by name of the option, length and diameter
+    (m), and the keys of the ``[thrust]`` of a curve."""
+    length, diameter = size or (1.6, 0.08)
+    rail = given.get("rail_length", 2.0)
+    play = ""
+    if "clearance" in given:
+        each = f'"{1e3 * given["clearance"]:.6g} mm"'
+        play = f"\nneck_to_slot = {each}\nhead_to_lip = {each}"
+    curve = thrust_curve or {"file": "j360_start.csv"}
+    return _TEXT.format(
+        name=name,
+        named=tomlkit.item(name).as_string(),
+        inclination=_INCLINATION,
+        curve=", ".join(f"{key} = {tomlkit.item(own).as_string()}" for key, own in curve.items()),
+        errors=tomlkit.item(from_catalogue.errors_file(name)).as_string(),
+        element="5 mm" if rail <= 2.0 else "10 mm" if rail <= 4.0 else "20 mm",
+        sources=_sources(given, size, thrust_curve),
+        mass=given.get("mass", 5.0),
+        length=length,
+        diameter=1e3 * diameter,
+        centre=_CENTRE * length,
+        rear=_REAR * length,
+        play=play,
+        rail=rail,
+        mounts=_mounts(rail),
+    )
+
+
+def errors(given: Mapping[str, float]) -> str:
+    """The random errors of the scene ``rocket_rail`` about the ``given`` numbers (SI), with those of the
+    angle of the rail as an angle."""
+    kind = from_catalogue.KINDS["rocket"]
+    usual = read_input(CATALOG / "vary" / f"{kind.scene}.toml").decode("utf-8")
+    document = tomlkit.parse(from_catalogue.errors(kind, given) or usual)
+    vary = document["vary"]
+    table = vary.pop("gravity.z")
+    table["mean"], table["sd"] = f"{_INCLINATION:g} deg", f"{_ERROR:g} deg"
+    vary["gravity.inclination"] = table
+    return tomlkit.dumps(document)
+
+
+def _sources(
+    given: Mapping[str, float],
+    size: tuple[float, float] | None,
+    thrust_curve: Mapping[str, str] | None,
+) -> str:
+    found = dict.fromkeys(("payload", "buttons", "rail", "thrust_offset", "gravity"), "assumed")
+    found |= dict.fromkeys(("contact", "friction"), "assumed: acetal on aluminium")
+    keys = {
+        "mass": ("payload.mass",),
+        "clearance": ("contact.clearance",),
+        "rail_length": ("rail.end",),
+    }
+    for option in given:
+        found |= dict.fromkeys(keys[option], from_catalogue.GIVEN)
+    if size is not None:
+        found |= dict.fromkeys(
+            ("payload.length", "payload.diameter", "payload.size"), from_catalogue.GIVEN
+        )
+    found["thrust"] = (
+        "thrustcurve.org: Cesaroni J360 Skidmark (Pro54-3G), points of the RASP file"
+        if thrust_curve is None
+        else from_catalogue.GIVEN
+    )
+    found["thrust.arm"] = "assumed: the nozzle at the tail"
+    return ", ".join(f'"{key}" = "{own}"' for key, own in found.items())
+
+
+def _mounts(rail: float) -> str:
+    """Clamps along a ``rail`` (m), on multiples of their length."""
+    count = max(3, math.ceil(rail / _SPAN) + 1)
+    last = 0.9 * rail - _MOUNT
+    places = [
+        max(_MOUNT * round(last * number / (count - 1) / _MOUNT), 0.0) for number in range(count)
+    ]
+    return ", ".join(
+        f'{{ start = "{place:.4g} m", end = "{place + _MOUNT:.4g} m" }}'
+        for place in sorted(set(places))
+    )
