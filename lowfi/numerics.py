@@ -16,7 +16,7 @@ from tipoff.mechanics.rail_compliance import (
 from tipoff.units import is_number, single
 
 AUTO = "auto"
-_LEAST_CELLS, _MOST_CELLS = 4, 100
+_LEAST_CELLS, MOST_CELLS = 4, 100
 _FEW_CELLS = 10
 _TOLERANCE = 2e-7
 # A relative error of 0.1 % per step gives no solution; below 1e-13 there is only rounding.
@@ -80,9 +80,9 @@ class Numerics:
                 f"degree: given {self.degree!r}, expected a whole number from {LEAST_DEGREE} to "
                 f"{MOST_DEGREE}, or {AUTO!r}"
             )
-        if not (type(self.cells) is int and _LEAST_CELLS <= self.cells <= _MOST_CELLS):
+        if not (type(self.cells) is int and _LEAST_CELLS <= self.cells <= MOST_CELLS):
             faults.append(
-                f"cells: given {self.cells!r}, expected {_LEAST_CELLS} to {_MOST_CELLS} along each "
+                f"cells: given {self.cells!r}, expected {_LEAST_CELLS} to {MOST_CELLS} along each "
                 f"edge of a pad"
             )
         if faults:

@@ -92,9 +92,10 @@ def run(
         progress: called with the completed fraction of the expected time, 0 to 1.
         sensitivity: whether ``checks`` of a surrogate has the changes of the rates (deg/s) by 1 um
             more and less of every clearance and by a tolerance of 1e-10, and ``message`` a warning of
-            a change above the limit of the scene's ``[agreement]``. These three runs are made when
-            one of the two is first used: by its name, ``summary``, ``save``, ``to_xarray`` or a
-            notebook.
+            a change above the limit of the scene's ``[agreement]``; and whether ``error`` has the error
+            of the rates by the model (deg/s). The further runs that this takes, about eight, are made
+            when one of the three is first used: by its name, ``summary``, ``save``, ``to_xarray`` or
+            a notebook.
         numerics: fields of ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``modes=4``, and
             ``element_size=2e-3`` (m) or ``"2 mm"``, of the reference and of the computed rail
             compliance. The scene may state the size of elements (``[studies]``).
@@ -115,7 +116,7 @@ def run(
         [5, 2, 9]
     """
     from tipoff import highfi, lowfi
-    from tipoff.workspace import asked, disturbed, kernel_marks
+    from tipoff.workspace import asked, kernel_marks, model_error
     from tipoff.workspace.run import Run
 
     scene = arguments.scene_of(scene)
@@ -147,7 +148,7 @@ def run(
         if not sensitivity:
             return found
         limit = math.degrees(scene.agreement.settled_limit)
-        return disturbed.told(request, found, limit)
+        return model_error.told(request, found, limit)
 
 
 def ensemble(

@@ -129,7 +129,7 @@ def test_an_answer_names_its_model_and_its_error(tmp_path):
     """Compliant contact without a word; the second run finds the compliance where the first one
     kept it."""
     asked = ("run", "--scene", "tiny", "--condition", "phi15", "--out", tmp_path)
-    first = call(*asked)
+    first = call(*asked, "--explain")
     assert first.exit_code == 0, first.output
     assert "tiny / phi15, model compliant: exited" in first.stdout
     assert (
@@ -137,8 +137,14 @@ def test_an_answer_names_its_model_and_its_error(tmp_path):
         in first.stdout
     )
     assert first.stderr.count("rail compliance, once per rail and pads") == 1
-    assert "  rails         rail compliance at 8 mm elements: uncertainty " in first.stdout
+    assert "  rail mesh     moves a rate by 0.22 deg/s. rail compliance at 8 mm" in first.stdout
+    short = call(*asked).stdout
+    assert set(short.splitlines()) < set(first.stdout.splitlines())
+    assert "  rate          5.0, 2.0, 9.0 ± 0.2 deg/s (x, y, z), 10.5 in total\n" in short
+    assert "  error         mostly by the rail mesh, 0.22 deg/s; " in short
     again = json.loads(call(*asked, "--json").stdout)
+    squares = sum(part**2 for part in again["error"]["parts_deg_s"].values())
+    assert again["error"]["rate_deg_s"] == pytest.approx(squares**0.5, rel=1e-12)
     assert again["rail_compliance"]["element_size_m"] == 8e-3
     assert again["rail_compliance"]["words"] in first.stdout
     assert again["model"] == COMPLIANT

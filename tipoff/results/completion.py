@@ -11,24 +11,28 @@ class Completed:
 
     PUT_OFF: ClassVar[tuple[str, ...]] = ()
 
-    def completed_by(self, complete: Callable[[], Self]) -> Self:
-        """A copy with the fields ``PUT_OFF`` of ``complete()``, which is called when one of them is
-        first used."""
+    def completed_by(self, complete: Callable[[], Self], *names: str) -> Self:
+        """A copy with the fields ``names``, of ``PUT_OFF``, of ``complete()``, which is called when one
+        of them is first used."""
         copy = object.__new__(type(self))
-        vars(copy).update(vars(self), _complete=complete)
-        for name in self.PUT_OFF:
-            del vars(copy)[name]
+        later = {**vars(self).get("_later", {}), **dict.fromkeys(names, complete)}
+        vars(copy).update(vars(self), _later=later)
+        for name in names:
+            vars(copy).pop(name, None)
         return copy
 
     if not TYPE_CHECKING:  # an attribute that does not exist stays a fault
 
         def __getattr__(self, name: str) -> Any:
             own = vars(self)
-            if name in type(self).PUT_OFF and "_complete" in own:
-                whole = own["_complete"]()
-                own.update({each: getattr(whole, each) for each in self.PUT_OFF})
-                return own[name]
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            complete = own.get("_later", {}).get(name)
+            if complete is None or name not in type(self).PUT_OFF:
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            whole = complete()
+            own.update(
+                {each: getattr(whole, each) for each, of in own["_later"].items() if of is complete}
+            )
+            return own[name]
 
     def __getstate__(self) -> dict[str, Any]:
         # complete: what completes it may hold megabytes

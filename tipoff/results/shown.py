@@ -54,6 +54,8 @@ def facts(run: "Trajectory") -> dict[str, str]:
             "rate": f"{_rates(rate)} deg/s (x, y, z)",
             "direction": _direction(velocity),
         }
+    if rate is not None and run.error is not None:
+        text["error"] = run.error.words
     if at == instant.EXIT:
         text |= _beyond("burnt out", found, instant.SETTLED)
     return (

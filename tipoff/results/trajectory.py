@@ -29,6 +29,7 @@ from tipoff.mechanics import ledger, outcome
 from tipoff.mechanics.model_names import MODELS
 from tipoff.results import finite, hand_over, shown
 from tipoff.results.completion import Completed
+from tipoff.results.model_error import ModelError
 
 if TYPE_CHECKING:
     import xarray
@@ -92,7 +93,7 @@ class Trajectory(Carded, Completed):
         True
     """
 
-    PUT_OFF: ClassVar = "checks", "message"
+    PUT_OFF: ClassVar = "checks", "message", "error"
 
     #: One of ``mechanics.model_names.MODELS``.
     model: str
@@ -125,6 +126,8 @@ class Trajectory(Carded, Completed):
     #: Resolved inputs.
     scene: dict
     message: str = field(default_factory=str)
+    #: Error of the rates by the model; only of a surrogate with ``sensitivity``.
+    error: ModelError | None = field(default_factory=type(None))
     numerics: dict = field(default_factory=dict)
     #: Stress of flexible rails, None for rigid rails and diverged runs. It has peak_stress_pa, the
     #: largest von Mises stress, at peak_stress_place_m (scene axes, undeformed) of peak_stress_rail
@@ -342,6 +345,7 @@ class Trajectory(Carded, Completed):
                     status=data.attrs["status"],
                     message=data.attrs["message"],
                     outcome=result,
+                    error=ModelError.read(data.attrs.get("error")),
                     **arrays,
                     **plain,
                 )
@@ -384,6 +388,7 @@ def _variables(run: Trajectory) -> dict[str, Labelled]:
 def _attributes(run: Trajectory) -> dict[str, str]:
     plain = {name: json.dumps(getattr(run, name), allow_nan=False) for name in _PLAIN}
     return {
+        **({} if run.error is None else {"error": run.error.written()}),
         "model": run.model,
         "status": run.status,
         "message": run.message,

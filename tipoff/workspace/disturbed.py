@@ -5,13 +5,14 @@ In a chaotic ejection both changes grow from contact to contact (``studies.agree
 the accuracy of any single run of such a case. The changes are stored beside the run, ``lowfi/*.disturbed.json``.
 """
 
+import math
 from dataclasses import asdict, dataclass, fields, replace
-from functools import partial
 
 from tipoff import cache, sources
 from tipoff.files import content_hash
 from tipoff.mechanics import instant
 from tipoff.results.trajectory import Trajectory
+from tipoff.scenes.scene import Scene
 from tipoff.workspace.run import Run, execute, with_modes_of
 from tipoff.workspace.store import Store
 
@@ -48,15 +49,13 @@ def kept(store: Store, run: Run, nominal: Trajectory, clearance_change: float) -
 
 def of(run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:
     """Changes by ``clearance_change`` (m), and by a tighter tolerance."""
-    from tipoff.lowfi.ensemble import twins  # slow to load
-
     if run.calibration is not None:  # its clearance is changed
         run = replace(run, scene=run.calibration.apply(run.scene), calibration=None)
     run = with_modes_of(nominal, run)
-    tight = twins.tight(run.numerics)
+    tight = tighter(run)
     found = Disturbed(
-        tolerance=tight.relative_tolerance,
-        by_tolerance_deg_s=_change(nominal, replace(run, numerics=tight)),
+        tolerance=tight.numerics.relative_tolerance,
+        by_tolerance_deg_s=_change(nominal, tight),
     )
     if run.scene.contact is None:
         return found
@@ -69,19 +68,35 @@ def of(run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:
     return replace(found, clearance_change_m=clearance_change, by_clearance_deg_s=worst)
 
 
+def tighter(run: Run) -> Run:
+    """The run at a tighter tolerance."""
+    from tipoff.lowfi.ensemble import twins  # slow to load
+
+    return replace(run, numerics=twins.tight(run.numerics))
+
+
+def plain(found: Disturbed) -> dict:
+    """The changes for JSON."""
+    return asdict(found)
+
+
+def is_sensitive(found: Disturbed, scene: Scene) -> bool:
+    """Whether a change is above the limit of agreement of the ``scene``, or a disturbed run does not
+    settle."""
+    return bool(warnings(found, math.degrees(scene.agreement.settled_limit)))
+
+
 def _change(nominal: Trajectory, changed: Run) -> float | None:
     return instant.change(nominal.outcome, execute(changed).outcome)
 
 
-def lines(found: Disturbed, limit: float) -> list[str]:
-    """The result as text, with a warning if a change is above ``limit`` (deg/s) or the run does not
-    settle."""
+def lines(found: Disturbed) -> list[str]:
+    """The result as text."""
     words = [
         f"{cause}: does not settle" if value is None else f"{value:.2g} deg/s by {cause}"
         for cause, value in _changes(found).items()
     ]
-    told = [f"  warning       {warning}" for warning in warnings(found, limit)]
-    return [f"  sensitivity   {', '.join(words)}", *told]
+    return [f"  sensitivity   {', '.join(words)}"]
 
 
 def warnings(found: Disturbed, limit: float) -> list[str]:
@@ -96,28 +111,6 @@ def warnings(found: Disturbed, limit: float) -> list[str]:
             )
             told.append(f"sensitive: {cause} {how}. Use an ensemble instead of a single run")
     return told
-
-
-def told(run: Run, nominal: Trajectory, limit: float) -> Trajectory:
-    """``nominal``, which is of ``run``, with its changes among its checks and the ``warnings`` in its
-    message; unchanged if it does not settle. The disturbed runs are made when one of the two is first
-    used: a loop over many runs that reads neither takes no time for them."""
-    if nominal.outcome.rate is None:
-        return nominal
-    return nominal.completed_by(partial(_told, run, nominal, limit))
-
-
-def _told(run: Run, nominal: Trajectory, limit: float) -> Trajectory:
-    from tipoff.lowfi.ensemble import twins  # slow to load
-
-    found = of(run, nominal, twins.CLEARANCE_CHANGE)
-    changes = {
-        "rate_change_by_tolerance_deg_s": found.by_tolerance_deg_s,
-        "rate_change_by_clearance_deg_s": found.by_clearance_deg_s,
-    }
-    checks = nominal.checks | {key: each for key, each in changes.items() if each is not None}
-    message = "; ".join(filter(None, [nominal.message, *warnings(found, limit)]))
-    return replace(nominal, checks=checks, message=message)
 
 
 def _changes(found: Disturbed) -> dict[str, float | None]:

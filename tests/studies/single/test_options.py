@@ -31,9 +31,10 @@ def test_numerics_of_the_command_are_those_of_the_run(options, numerics, tmp_pat
         ("run --range --model springs --degree 2", ["--model", "--degree"]),
         ("run --range --calibration c.toml --cells 8", ["--calibration", "--cells"]),
         ("run --range --budget 1s", ["--budget"]),
+        ("run --explain --json", ["--explain"]),
         (
-            "run --all --condition phi15 --model springs --modes 2 --range",
-            ["--condition", "--model", "--modes", "--range"],
+            "run --all --condition phi15 --model springs --modes 2 --range --explain",
+            ["--condition", "--model", "--modes", "--range", "--explain"],
         ),
         ("run --all --checkpoint-every 1s", ["--checkpoint-every"]),
         ("compare --vary paper --seed 3", ["--vary", "--seed"]),

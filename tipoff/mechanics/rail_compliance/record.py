@@ -16,6 +16,7 @@ from tipoff.mechanics.rail_compliance import (
     joint_terms,
     pairs,
     patterns,
+    softened,
     stored,
 )
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
@@ -307,6 +308,13 @@ class RailCompliance(Shown):
         """The compliance for the first ``count`` patterns: loads in these alone, and displacements
         projected on them."""
         return replace(self, **fewer.of_first(self, count))
+
+    @cached_property
+    def softer(self) -> "RailCompliance | None":
+        """The compliance that is larger by its own uncertainty; None if that is not known."""
+        if self.uncertainty is None or self.frequency_uncertainty is None:
+            return None
+        return replace(self, **softened.softened(self))
 
     def restricted(self, count: int, coupled: bool = True) -> "RailCompliance":
         """The compliance of a simpler model: only the first ``count`` patterns of the same degree,

@@ -311,11 +311,3 @@ CheckpointEvery = Annotated[
         help='Wall time between checkpoints of a run of the reference: 30s, "5 min"; default: 60 s.',
     ),
 ]
-Resume = Annotated[
-    bool,
-    typer.Option(
-        "--resume/--no-resume",
-        help="Continue an interrupted run of the reference from its checkpoint. The result is the "
-        "same.",
-    ),
-]

@@ -12,7 +12,6 @@ from tipoff.studies.commands.options import (
     Export,
     Model,
     Modes,
-    Resume,
     condition_names,
 )
 from tipoff.studies.commands.request import Request, scene_command
@@ -76,15 +75,24 @@ def run(
     export: Export = None,
     *,
     checkpoint_every: CheckpointEvery = None,
-    resume: Resume = True,
+    explain: Annotated[
+        bool,
+        typer.Option(
+            "--explain",
+            help="Print all that the answer rests on, each with its effect on the rates: parts of the "
+            "error, sensitivity, agreement with the reference, thrust. --json always has it.",
+        ),
+    ] = False,
 ) -> Output:
     """Run one or more conditions in one model; prints velocity and rates after the exit.
 
-    The output names the model and, after tipoff compare, its error. The rail compliance is computed
+    The rates have the error of the model, and a line its largest part. A sensitive run has the range of
+    its neighbours. --explain prints all that this rests on. The rail compliance is computed
     once for a rail with its pads. --accuracy and --budget choose a model from the results of tipoff
     cost.
 
       tipoff run --range
+      tipoff run --explain
       tipoff run --condition phi35
       tipoff run --condition phi15,phi35,phi60
       tipoff run --condition phi35 --model finite-elements
@@ -97,7 +105,7 @@ def run(
     from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
     from tipoff.scenes.names import NOMINAL
     from tipoff.studies.runs import page, stage
-    from tipoff.studies.single import single
+    from tipoff.studies.single import single, text
     from tipoff.workspace import models
 
     def shown(found: dict) -> "list[Part]":
@@ -117,15 +125,16 @@ def run(
         "--degree": degree,
         "--cells": cells,
     }
+    switches = {"--range": range_ or None, "--explain": explain or None}
     if all_:
         usual = {"--model": model if model == SPRINGS else None}
         rest = {"--condition": condition and ", ".join(condition), "--export": export}
-        flags = {"--accuracy": accuracy, "--budget": budget, "--range": range_ or None}
+        flags = {"--accuracy": accuracy, "--budget": budget, **switches}
         expected = "none: --all runs each condition with the defaults of its model"
         without(own | usual | rest | flags, expected)
         models.require(models.Options(model), checkpoint_every=checkpoint_every)
         fidelity = "highfi" if model == FINITE_ELEMENTS else "lowfi"
-        every = request.study(checkpoint_every=checkpoint_every, resume=resume)
+        every = request.study(checkpoint_every=checkpoint_every)
         made = stage.run(every, fidelity)
         return Output.of(made, lambda runs: [page.settled(runs.conditions)], request.out)
     if range_:
@@ -133,8 +142,12 @@ def run(
         chosen = {"--accuracy": accuracy, "--budget": budget}
         expected = "none: --range is that of compliant contact with its defaults"
         without(own | chosen | usual, expected)
-    options, quiet = models.Options(model, calibration, modes, degree, cells), request.json_
-    study = request.study(condition or [NOMINAL], checkpoint_every=checkpoint_every, resume=resume)
+    options = models.Options(model, calibration, modes, degree, cells)
+    detail = text.Detail.ALL if explain else text.Detail.ANSWER
+    if request.json_:
+        without({"--explain": explain or None}, "none: --json has all")
+        detail = text.Detail.NOTHING
+    study = request.study(condition or [NOMINAL], checkpoint_every=checkpoint_every)
     names = list(study.conditions)
 
     if export:
@@ -143,12 +156,12 @@ def run(
     def ranged(name: str, found: dict) -> dict:
         if export and not found["failed"]:
             single.export(study, name, found, export)
-        return found | (single.ranged(study, name, quiet) if range_ else {})
+        return found | (single.ranged(study, name, detail) if range_ else {})
 
     if accuracy is None and budget is None:
         models.require(options, checkpoint_every=checkpoint_every)
         found = single.several(
-            names, lambda name: ranged(name, single.run(study, name, options, quiet))
+            names, lambda name: ranged(name, single.run(study, name, options, detail))
         )
         return Output(found, shown)
     without(own, "none: --accuracy and --budget choose the model")
@@ -157,6 +170,6 @@ def run(
         lambda: quantity("--budget", budget, "s", "2 s"),
     )
     found = single.several(
-        names, lambda name: ranged(name, single.chosen(study, name, error, wall, quiet))
+        names, lambda name: ranged(name, single.chosen(study, name, error, wall, detail))
     )
     return Output(found, shown)

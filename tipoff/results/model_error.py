@@ -1,0 +1,87 @@
+"""The error of the rates of one run by its model."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import NamedTuple
+
+
+class Range(NamedTuple):
+    """Lowest and highest rates (deg/s, about x, y, z) of a run and its neighbours, which have up to
+    1 um more or less of every clearance, or a tighter tolerance."""
+
+    low_deg_s: tuple[float, ...]
+    high_deg_s: tuple[float, ...]
+    #: Number of runs that have rates, and of those that have none.
+    runs: int
+    lost: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModelError:
+    """Estimated error of the rates of a run, at the instant that counts for it.
+
+    It covers the model, and not the inputs: clearance, misalignment and the other values of the scene
+    are taken as exact. A run that is sensitive has a range of rates instead.
+
+    Example:
+        >>> error = tipoff.run(tipoff.load("tiny").condition("phi15")).error
+        >>> error.largest, round(error.rate_deg_s, 1)  # deg/s
+        ('rail mesh', 0.2)
+    """
+
+    #: deg/s, largest change of the rate about any axis by each cause, by its name.
+    parts_deg_s: dict[str, float] = field(default_factory=dict)
+    #: Why no error is known; empty if it is.
+    not_known: str = ""
+    #: Rates of a sensitive run and its neighbours; None for other runs.
+    range: Range | None = None
+
+    @property
+    def rate_deg_s(self) -> float | None:
+        """Error (deg/s) of the rate about each axis: the root of the sum of the squares of the parts,
+        whose causes are independent. None if it is not known."""
+        return None if self.not_known else math.hypot(*self.parts_deg_s.values())
+
+    @property
+    def largest(self) -> str:
+        """Name of the largest part; empty without parts."""
+        return max(self.parts_deg_s, key=self.parts_deg_s.__getitem__, default="")
+
+    @property
+    def words(self) -> str:
+        """The error, or the range, as text."""
+        if self.range is not None:
+            spans = ", ".join(
+                f"{low:.3f} to {high:.3f}"
+                for low, high in zip(self.range.low_deg_s, self.range.high_deg_s)
+            )
+            return f"sensitive: {spans} deg/s over {self.range.runs} neighbours within 1 µm of clearance"
+        if self.rate_deg_s is None:
+            return f"not known: {self.not_known}"
+        return f"{self.rate_deg_s:.2g} deg/s about each axis, mostly by the {self.largest}"
+
+    def plain(self) -> dict:
+        """As in results, for JSON: the fields, ``rate_deg_s`` and ``largest``."""
+        own = asdict(self) | {"range": self.range and self.range._asdict()}
+        return own | {"rate_deg_s": self.rate_deg_s, "largest": self.largest}
+
+    @classmethod
+    def of(cls, found: Mapping) -> "ModelError":
+        """The error that ``plain`` wrote."""
+        own = found["range"]
+        return cls(
+            parts_deg_s=found["parts_deg_s"],
+            not_known=found["not_known"],
+            range=own and Range(**{name: own[name] for name in Range._fields}),
+        )
+
+    def written(self) -> str:
+        """JSON of ``plain``."""
+        return json.dumps(self.plain(), allow_nan=False)
+
+    @classmethod
+    def read(cls, text: str | None) -> "ModelError | None":
+        """The error that ``written`` returned as ``text``; None without one."""
+        return None if text is None else cls.of(json.loads(text))
