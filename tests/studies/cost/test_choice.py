@@ -217,9 +217,8 @@ def test_a_chosen_point_runs_with_its_patterns(tmp_path, monkeypatch, degree):
         model="patterns", rung="modal", setting=1e-6, error_deg_s=0.01, modes=0, degree=degree
     )
     made = []
-    monkeypatch.setattr(cost_stage, "stored", lambda _: {})
-    table = cost([found], 0.02)
-    monkeypatch.setattr(cost_stage, "STAGE", SimpleNamespace(read=lambda _: table))
+    stored = SimpleNamespace(result=cost([found], 0.02))
+    monkeypatch.setattr(cost_stage, "stored", lambda _: stored)
     candidate = Candidate("modal", "compliant", compliance={"phi15": None})
     monkeypatch.setattr(cost_stage, "surrogates", lambda *_: [candidate])
     monkeypatch.setattr(single, "result_of", lambda *given: made.append(given) or {})

@@ -25,6 +25,7 @@ from tipoff.studies.runs import page
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.results import ConditionRun
 from tipoff.studies.single import single
+from tipoff.studies.single.text import Detail
 from tipoff.studies.sweeps import stage as sweeps
 from tipoff.studies.sweeps.options import Options
 from tipoff.workspace.settings import Settings
@@ -78,7 +79,7 @@ def test_a_single_run_answers_with_its_instant(tmp_path, capsys, lasts, at):
     """What the command, the table of conditions and Python print as the answer: rates under the thrust at the
     exit, and after them those of the whole push. Control: a push that ends on the rail."""
     scene = burning().replace({"thrust.duration": lasts} | ROW)
-    made = single.run(Study(scene, tmp_path, Settings(workers=1)), NOMINAL)
+    made = single.run(Study(scene, tmp_path, Settings(workers=1)), NOMINAL, detail=Detail.ALL)
     printed = dict(line.strip().split(None, 1) for line in capsys.readouterr().out.splitlines())
     leaves = made["exit_time_s"]
     time = leaves + 1e-4 if at == "exit" else lasts
