@@ -27,7 +27,7 @@ QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics 
   tests/workspace/test_models.py tests/studies/report
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest curves paper recovery report view pictures peers convergence rails full-report bench docs examples examples-ready check coverage hooks test test-slow fuzz wheel clean
+.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest curves paper recovery flights report view pictures peers convergence rails full-report bench docs examples examples-ready check coverage hooks test test-slow fuzz wheel clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-14s %s\n", $$1, $$2}' Makefile
@@ -90,6 +90,9 @@ recovery: $(READY) ## whether calibration finds hidden values: 20 draws with noi
 
 flight: $(READY) ## after separation: miss of a target in orbit, pointing, coning, whether it touches again
 	$(TIPOFF) flight $(ASKED) $(if $(CASES),--cases $(CASES))
+
+flights: $(READY) ## two measured launches beside predictions: RECORDS=folder with the records
+	$(EVIDENCE) flights --out $(OUT) $(if $(RECORDS),--records $(RECORDS))
 
 bench: $(READY) ## speed of the solvers against what one would write today: OUT/bench
 	$(EVIDENCE) bench --out $(OUT)

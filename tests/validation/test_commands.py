@@ -10,7 +10,7 @@ from tipoff.studies import registry
 from tipoff.studies.commands import running
 from validation import STUDIES
 
-NAMES = ("montecarlo", "paper", "recovery", "scaling", "bench", "peers")
+NAMES = ("montecarlo", "paper", "recovery", "scaling", "bench", "peers", "flights")
 
 
 def call(module: str, *arguments: str) -> subprocess.CompletedProcess:
@@ -52,4 +52,4 @@ def test_added_studies_are_on_the_page(monkeypatch):
     assert after[: len(before)] == before
     assert running.program("paper --scene tiny") == "python -m validation"
     assert running.program("run --all") == "tipoff"
-    assert after[len(before) :] == ["montecarlo", "tails", *NAMES[1:]]
+    assert after[len(before) :] == ["montecarlo", "tails", *NAMES[1:-1]]

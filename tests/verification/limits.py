@@ -8,7 +8,7 @@ tests, the recorded comparisons and the measurements.
 Verification asks whether the equations are solved correctly. {cases} cases have an answer that does not come from this
 project (`tests/CASES.md`); {controlled} of them name a control, a weaker method or a slip that the
 same test must see fail. Validation asks whether the equations describe the world. Five published measurements are
-below. No measured ejection along rails was found.
+below. `docs/measured_launches.md` compares a measured launch.
 
 How to read the tables of cases:
 
