@@ -160,6 +160,7 @@ def _text(launcher: Launcher, variant: Variant, thrust: Path) -> str:
     return f"""extends = "rocket_rail"
 name = "{launcher.name}"
 description = "Measured launch {launcher.name}."
+buttons = "absent"
 conditions = "absent"
 agreement = "absent"
 
@@ -176,6 +177,10 @@ zz = "{launcher.transverse} kg*m**2"
 start = "{start:.4f} m"
 end = "{start + launcher.rail:.4f} m"
 at = ["0 mm", "{lip - half:.3f} mm"]
+clearance = "0.25 mm"
+leg = "6 mm"
+thickness = "4.5 mm"
+stretch = 3
 mounts = [
 {mounts}]
 mounted = [["{0.6 * half:.3f} mm", "{-half:.3f} mm"], ["{-0.6 * half:.3f} mm", "{-half:.3f} mm"]]
@@ -206,6 +211,9 @@ radial = "0 deg"
 [gravity]
 x = "{-GRAVITY * np.sin(launcher.elevation):.5f} m/s**2"
 z = "{across:.5f} m/s**2"
+
+[contact]
+clearance = "0.25 mm"
 
 [output]
 interval = "0.5 ms"

@@ -9,7 +9,7 @@ import pytest
 
 from tests.docs import pages
 from tipoff.faults import SceneError
-from validation.flights import compare, page, record
+from validation.flights import compare, launchers, page, record
 from validation.flights.launchers import GRAVITY, LAUNCHERS, PSAS
 
 KEPT = json.loads((pages.ROOT / "tests/measurements/flights.json").read_text(encoding="utf-8"))[
@@ -67,6 +67,21 @@ def test_a_record_that_is_missing_is_refused(tmp_path):
     (tmp_path / "psas_l12.csv").write_text("time_s\n1\n2\n", encoding="utf-8")
     with pytest.raises(SceneError, match="seven columns"):
         record.read(tmp_path, PSAS)
+
+
+@pytest.mark.parametrize("launcher", LAUNCHERS, ids=lambda launcher: launcher.name)
+def test_scenes_have_the_published_places(launcher, tmp_path):
+    curve = tmp_path / "thrust.csv"
+    curve.write_text("time_s,force_N\n0,0\n0.01,2000\n0.9,2000\n0.95,0\n", encoding="utf-8")
+    for number, variant in enumerate(launcher.variants):
+        made = launchers.scene(launcher, variant, curve, tmp_path, number)
+        assert made.rail.end - made.rail.start == pytest.approx(launcher.rail)
+        assert len(made.pads) == 12
+        assert {pad.position[0] for pad in made.pads} == {variant.rear, variant.front}
+        for draw in launchers.draws(3, number):
+            changed = made.replace(launchers.changes(launcher, draw))
+            assert 0.1e-3 <= changed.contact.clearance <= 1e-3
+            assert changed.payload.mass == pytest.approx(launcher.mass, rel=0.0151)
 
 
 @pytest.mark.parametrize("kept", KEPT, ids=lambda kept: kept["flight"])
