@@ -22,9 +22,9 @@ def fault(stepper: Stepper, recorded: Recorded, row: np.ndarray) -> tuple[str, f
     state, now, scale = stepper.state, f"at {stepper.time:.6g} s", recorded.scale
     if not (np.isfinite(row).all() and np.isfinite(state.work.view(float)).all()):
         return f"a value became infinite {now}", scale
-    _, transverse = samples.ledgers(
-        np.array([*recorded.rows[:1], row]), np.array([*recorded.work[:1], state.work])
-    )
+    # Plain numbers: numpy joins records in a multiple of the time.
+    work_done = [each.view(float) for each in (*recorded.work[:1], state.work)]
+    _, transverse = samples.ledgers(np.array([*recorded.rows[:1], row]), np.array(work_done))
     scale = max(scale, float(transverse[-1, 2:5].sum()))
     loss, work = abs(ledger.residual(transverse)[-1]), abs(state.work["thrust"][TOTAL])
     words = ""
