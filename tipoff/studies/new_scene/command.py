@@ -34,6 +34,14 @@ def _option_name(name: str) -> str:
 
 def new(
     file: Annotated[Path, typer.Argument(metavar="FILE.toml", help="The scene file to write.")],
+    design: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[DESIGN.ork]",
+            help="With --rocket: a design of OpenRocket, saved with the results of a simulation. It gives mass, "
+            "mass centre and inertia at launch, buttons or lugs, rail and thrust.",
+        ),
+    ] = None,
     mass: Annotated[str | None, _option("mass")] = None,
     size: Annotated[str | None, _option("size")] = None,
     rail_length: Annotated[str | None, _option("rail_length")] = None,
@@ -83,6 +91,7 @@ def new(
       tipoff new my_launcher.toml --mass "12 kg" --thrust "4 kN"
       tipoff new my_deployer.toml --deployer 3u --mass "4.5 kg"
       tipoff new my_rocket.toml --rocket --mass "6 kg"
+      tipoff new my_rocket.toml --rocket design.ork
       tipoff new measured.toml --thrust-curve firing.csv
       tipoff run --scene my_launcher.toml
 
@@ -114,7 +123,11 @@ def new(
         _, text = together(
             lambda: _require_new(file),
             lambda: (
-                _from_catalogue(
+                _of_design(
+                    file, design, [*given.values(), thrust_curve, pads], rocket and not deployer
+                )
+                if design is not None
+                else _from_catalogue(
                     file, kind, given, thrust_curve, {"pads": pads, "rocket": both or None}
                 )
                 if kind
@@ -219,6 +232,29 @@ def _next(found: dict) -> list[str]:
         f"  tipoff ensemble --scene {file}    # with random errors of thrust and mass",
         f"  tipoff report --scene {file}      # beside finite elements, on one page",
     ]
+
+
+def _of_design(file: Path, design: Path, others: list, is_rocket: bool) -> str:
+    """The scene of a design; its thrust and its errors are written beside ``file``. Raises SceneError."""
+    from tipoff.faults import Fault, SceneError
+    from tipoff.files import read_input, write_text
+    from tipoff.formats.designs.openrocket import read_openrocket
+    from tipoff.studies.new_scene import from_catalogue, rocket
+
+    if not is_rocket or any(value is not None for value in others):
+        expected = "--rocket and no other option beside a design"
+        raise SceneError([Fault("DESIGN.ork", "option", str(design), expected)])
+    try:
+        found = read_openrocket(read_input(design))
+    except (OSError, ValueError) as fault:
+        words = f"a readable file ({fault.strerror})" if isinstance(fault, OSError) else str(fault)
+        raise SceneError([Fault(str(design), "design", "this file", words)]) from fault
+    curve = f"{file.stem}_thrust.csv"
+    if not file.exists():
+        write_text(file.parent / curve, rocket.csv(found))
+        errors = rocket.errors({"mass": found.mass}, 90.0 - found.rail_angle)
+        write_text(file.parent / from_catalogue.errors_file(file.stem), errors)
+    return rocket.of_design(file.stem, design.name, found, curve)
 
 
 def _length_and_diameter(text: str) -> tuple[float, float]:

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 import tomlkit
 
 from tipoff.files import read_input
+from tipoff.formats.designs.openrocket import Design
+from tipoff.scenes.parts.profiles import PROFILES
 from tipoff.scenes.scene import CATALOG
 from tipoff.studies.new_scene import from_catalogue
 
@@ -35,13 +37,12 @@ provenance = {{ {sources} }}
 mass = "{mass:.6g} kg"
 length = "{length:.6g} m"
 diameter = "{diameter:.6g} mm"
-mass_centre = "{centre:.4g} m"
+mass_centre = "{centre:.6g} m"{inertia}
 [[buttons]]
-place = "{rear:.4g} m"
-profile = "4040 slot 8"  # or 1010, 1515; or neck, neck_height, head and flange of your button
+place = "{rear:.6g} m"
+profile = "{profile}"  # or 1010, 1515; or neck, neck_height, head and flange of your button
 material = "acetal"  # or nylon, aluminium{play}
-[[buttons]]
-place = "{centre:.4g} m"
+{front}
 [rail]
 start = "0 m"
 end = "{rail:.6g} m"
@@ -64,26 +65,82 @@ def text(
         each = f'"{1e3 * given["clearance"]:.6g} mm"'
         play = f"\nneck_to_slot = {each}\nhead_to_lip = {each}"
     curve = thrust_curve or {"file": "j360_start.csv"}
+    centre, rear = _CENTRE * length, _REAR * length
     return _TEXT.format(
         name=name,
         named=tomlkit.item(name).as_string(),
         inclination=_INCLINATION,
         curve=", ".join(f"{key} = {tomlkit.item(own).as_string()}" for key, own in curve.items()),
         errors=tomlkit.item(from_catalogue.errors_file(name)).as_string(),
-        element="5 mm" if rail <= 2.0 else "10 mm" if rail <= 4.0 else "20 mm",
+        element=_element(rail),
         sources=_sources(given, size, thrust_curve),
         mass=given.get("mass", 5.0),
         length=length,
         diameter=1e3 * diameter,
-        centre=_CENTRE * length,
-        rear=_REAR * length,
+        centre=centre,
+        rear=rear,
+        front=_button(centre),
+        inertia="",
+        profile="4040 slot 8",
         play=play,
         rail=rail,
         mounts=_mounts(rail),
     )
 
 
-def errors(given: Mapping[str, float]) -> str:
+def of_design(name: str, file: str, design: Design, curve: str) -> str:
+    """The scene as TOML for a ``design`` from a ``file``, whose thrust is in the file ``curve``. Each value
+    has the file and its field as provenance."""
+    rear, *others = sorted(design.length - place for place in design.guides)
+    moments = {"xx": design.along, "yy": design.across, "zz": design.across}
+    inertia = ", ".join(f'{axis} = "{value:.6g} kg*m**2"' for axis, value in moments.items())
+    sources = {"buttons": "assumed: the profile", "rail": "assumed", "thrust_offset": "assumed"}
+    sources |= dict.fromkeys(("contact", "friction"), "assumed: acetal on aluminium")
+    sources |= {key: f"{file}: {field}" for key, field in design.sources.items()}
+    sources |= dict.fromkeys(("payload.size",), sources["payload.length"])
+    sources["thrust.arm"] = "assumed: the nozzle at the tail"
+    small = design.neck is None or design.neck < PROFILES["1010"].slot
+    return _TEXT.format(
+        name=name,
+        named=tomlkit.item(name).as_string(),
+        inclination=90.0 - design.rail_angle,
+        curve=f"file = {tomlkit.item(curve).as_string()}",
+        errors=tomlkit.item(from_catalogue.errors_file(name)).as_string(),
+        element=_element(design.rail_length),
+        sources=", ".join(
+            f'"{key}" = {tomlkit.item(own).as_string()}' for key, own in sources.items()
+        ),
+        mass=design.mass,
+        length=design.length,
+        diameter=1e3 * design.diameter,
+        centre=design.length - design.mass_centre,
+        rear=rear,
+        front="\n".join(map(_button, others)),
+        inertia=f"\ninertia = {{ {inertia} }}",
+        profile="1010" if small else "1515",
+        play="",
+        rail=design.rail_length,
+        mounts=_mounts(design.rail_length),
+    )
+
+
+def csv(design: Design) -> str:
+    """The thrust of a ``design`` until burnout as CSV."""
+    last = max((n for n, (_, force) in enumerate(design.curve) if force > 0.0), default=0)
+    rows = design.curve[: last + 2]
+    kept = [row for n, row in enumerate(rows) if n == 0 or row[0] > rows[n - 1][0]]
+    return "time_s,force_N\n" + "".join(f"{time:g},{force:g}\n" for time, force in kept)
+
+
+def _button(place: float) -> str:
+    return f'[[buttons]]\nplace = "{place:.6g} m"'
+
+
+def _element(rail: float) -> str:
+    return "5 mm" if rail <= 2.0 else "10 mm" if rail <= 4.0 else "20 mm"
+
+
+def errors(given: Mapping[str, float], inclination: float = _INCLINATION) -> str:
     """The random errors of the scene ``rocket_rail`` about the ``given`` numbers (SI), with those of the
     angle of the rail as an angle."""
     kind = from_catalogue.KINDS["rocket"]
@@ -91,7 +148,7 @@ def errors(given: Mapping[str, float]) -> str:
     document = tomlkit.parse(from_catalogue.errors(kind, given) or usual)
     vary = document["vary"]
     table = vary.pop("gravity.z")
-    table["mean"], table["sd"] = f"{_INCLINATION:g} deg", f"{_ERROR:g} deg"
+    table["mean"], table["sd"] = f"{inclination:g} deg", f"{_ERROR:g} deg"
     vary["gravity.inclination"] = table
     return tomlkit.dumps(document)
 

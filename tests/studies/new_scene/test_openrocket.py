@@ -1,0 +1,113 @@
+"""A design of OpenRocket becomes a scene with the places, numbers and thrust that it states."""
+
+import gzip
+import io
+import math
+import zipfile
+
+import pytest
+from typer.testing import CliRunner
+
+from tipoff import scenes
+from tipoff.formats.designs.openrocket import read_openrocket
+from tipoff.scenes import uncertainty
+from tipoff.studies.cli import app
+
+# made up: a nose of 0.5 m, a tube of 1.5 m; buttons 0.1 and 0.9 m in front of the tail
+DESIGN = """<?xml version='1.0' encoding='utf-8'?>
+<openrocket version="1.10"><rocket><subcomponents><stage><subcomponents>
+<nosecone><length>0.5</length><aftradius>auto 0.05</aftradius></nosecone>
+<bodytube><length>1.5</length><radius>0.05</radius><subcomponents>
+<railbutton><axialoffset method="bottom">-0.1</axialoffset><instancecount>2</instancecount>
+<instanceseparation>-0.8</instanceseparation><innerdiameter>0.006</innerdiameter></railbutton>
+</subcomponents></bodytube></subcomponents></stage></subcomponents></rocket>
+<simulations><simulation><name>Windy</name>
+<conditions><launchrodlength>3.0</launchrodlength><launchrodangle>6.0</launchrodangle></conditions>
+<flightdata><databranch name="MAIN" types="Time,Mass,CG location,Longitudinal moment of inertia,\
+Rotational moment of inertia,Thrust">
+<datapoint>0,9.5,1.2,2.6,0.014,0</datapoint><datapoint>0.05,9.4,1.2,2.6,0.014,900</datapoint>
+<datapoint>2.0,8.0,1.1,2.4,0.013,800</datapoint><datapoint>2.1,7.9,1.1,2.4,0.013,0</datapoint>
+<datapoint>9.0,7.9,1.1,2.4,0.013,NaN</datapoint></databranch></flightdata></simulation></simulations>
+</openrocket>"""
+
+
+def zipped(text: str) -> bytes:
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        archive.writestr("rocket.ork", text)
+    return stream.getvalue()
+
+
+def call(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.mark.parametrize("packed", [str.encode, zipped, lambda text: gzip.compress(text.encode())])
+def test_every_value_of_a_design_is_in_the_scene_with_its_field(packed, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "design.ork").write_bytes(packed(DESIGN))
+    made = call("new", "mine.toml", "--rocket", "design.ork")
+    assert made.exit_code == 0, made.output
+    scene = scenes.load("mine.toml")
+    assert (scene.payload.mass, scene.payload.size) == (9.5, pytest.approx((2.0, 0.1, 0.1)))
+    assert (scene.payload.inertia.xx, scene.payload.inertia.yy) == (0.014, 2.6)
+    places = sorted({pad.position[0] for pad in scene.pads})
+    assert places == pytest.approx([0.1 - 0.8, 0.9 - 0.8])  # the mass centre is 0.8 m from the tail
+    assert (scene.rail.start, scene.rail.end) == pytest.approx((-0.8, 2.2))
+    assert math.degrees(math.atan2(-scene.gravity.x, -scene.gravity.z)) == pytest.approx(84.0)
+    assert scene.thrust.requested() == pytest.approx(0.5 * 45 + 850 * 1.95 + 40)
+    assert scene.rail.section.slot == pytest.approx(6.477e-3)
+    for key, field in {
+        "payload.mass": "first datapoint, Mass",
+        "payload.inertia": "Rotational moment of inertia",
+        "buttons": "railbutton: axialoffset",
+        "rail.end": "launchrodlength",
+    }.items():
+        text = scenes.provenance.of(scene.provenance, key)
+        assert text.startswith("design.ork: ") and field in text
+    vary = uncertainty.of_scene(scene).vary
+    assert vary["payload.mass"].ppf(0.5) == pytest.approx(9.5)
+    assert vary["gravity.inclination"].ppf(0.5) == pytest.approx(math.radians(84.0))
+
+
+def test_places_by_every_method_and_the_ends_of_a_lug():
+    def guides(offset, kind="railbutton"):
+        text = DESIGN.replace('<axialoffset method="bottom">-0.1</axialoffset>', offset)
+        return read_openrocket(text.replace("railbutton", kind).encode()).guides
+
+    assert guides('<axialoffset method="top">1.4</axialoffset>') == pytest.approx((1.1, 1.9))
+    assert guides('<position type="middle">0.65</position>') == pytest.approx((1.1, 1.9))
+    assert guides('<axialoffset method="absolute">1.9</axialoffset>') == pytest.approx((1.1, 1.9))
+    lug = '<axialoffset method="top">1.0</axialoffset><length>0.2</length>'
+    one = DESIGN.replace("<instancecount>2", "<instancecount>1").replace("railbutton", "launchlug")
+    text = one.replace('<axialoffset method="bottom">-0.1</axialoffset>', lug)
+    assert read_openrocket(text.encode()).guides == pytest.approx((1.5, 1.7))
+
+
+@pytest.mark.parametrize(
+    "data, words",
+    [
+        (b"PK\x03\x04 no archive", "whole zip archive"),
+        (b"\x1f\x8bno", "whole gzip"),
+        (b"<openrocket>", "valid XML"),
+        (b"<rocket/>", "element openrocket"),
+        (b'<!DOCTYPE a [<!ENTITY b "c">]><openrocket>&b;</openrocket>', "without a document type"),
+        (
+            b"<openrocket/>",
+            "nose cone.*two rail buttons.*stored data.*launchrodlength.*launchrodangle",
+        ),
+        (DESIGN.replace("Mass,", "Weight,").encode(), "run it in OpenRocket and save"),
+        (DESIGN.replace("railbutton", "fin").encode(), "two rail buttons or a launch lug$"),
+    ],
+)
+def test_a_design_that_cannot_be_used_is_refused_with_all_that_is_missing(data, words):
+    with pytest.raises(ValueError, match=f"(?s){words}"):
+        read_openrocket(data)
+
+
+def test_nothing_is_written_for_a_refused_design(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "design.ork").write_text("<openrocket/>")
+    for options in (["--rocket"], [], ["--rocket", "--mass", "3 kg"]):
+        made = call("new", "mine.toml", *options, "design.ork")
+        assert made.exit_code == 2 and [each.name for each in tmp_path.iterdir()] == ["design.ork"]

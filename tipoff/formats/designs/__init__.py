@@ -1,0 +1,1 @@
+"""Designs of rockets in files of other programs."""

@@ -1,0 +1,216 @@
+"""Designs of OpenRocket, ``.ork``: XML, plain, in a zip archive or compressed by gzip. Lengths are in m,
+masses in kg, angles in deg.
+
+The state at launch is the first point of the first simulation with stored data: OpenRocket writes it
+when a design is saved with its results. Places are distances behind the tip of the nose. A file with a
+document type is refused, so nothing can define an entity.
+"""
+
+import gzip
+import io
+import zipfile
+from collections.abc import Iterator
+from typing import NamedTuple
+from xml.etree import ElementTree
+from xml.parsers import expat
+
+_LARGEST = 100_000_000  # bytes of XML
+_OUTSIDE = ("nosecone", "bodytube", "transition")
+_STATE = {
+    "mass": "Mass",
+    "mass_centre": "CG location",
+    "across": "Longitudinal moment of inertia",
+    "along": "Rotational moment of inertia",
+}
+
+
+class Design(NamedTuple):
+    """What a design says, in SI and degrees; ``sources`` names the field of each value."""
+
+    length: float
+    diameter: float
+    guides: tuple[float, ...]  # places of buttons, or of the ends of one lug
+    neck: float | None  # diameter of the neck of the buttons
+    mass: float
+    mass_centre: float
+    across: float  # kg m2
+    along: float
+    rail_length: float
+    rail_angle: float  # from the vertical
+    curve: tuple[tuple[float, float], ...]  # time (s) and thrust (N)
+    sources: dict[str, str]
+
+
+def read_openrocket(data: bytes) -> Design:
+    """The design in the bytes of a file. Raises ValueError with every value that is missing."""
+    root = _root(_text(data))
+    missing: list[str] = []
+    outside = list(_outside(root))
+    if not outside:
+        missing.append("a nose cone or a body tube")
+    length = sum(each[2] for each in outside)
+    radii = [radius for part, _, _ in outside for radius in _radii(part)]
+    if outside and not radii:
+        missing.append("a radius of the body")
+    guides, neck, words = _guides(outside)
+    if len(guides) < 2:
+        missing.append("two rail buttons or a launch lug")
+    rows, state, conditions, simulation = _simulation(root)
+    if state is None:
+        missing.append(
+            "a simulation with stored data (mass, CG location, both moments of inertia, thrust): run it in "
+            "OpenRocket and save the design with its results"
+        )
+    rod = [_number(conditions, f"launchrod{name}") for name in ("length", "angle")]
+    missing += [f"launchrod{n}" for n, v in zip(("length", "angle"), rod) if v is None]
+    if missing or state is None or rod[0] is None or rod[1] is None:
+        raise ValueError(f"a design that states {'; '.join(missing)}")
+    branch = f"simulation {simulation!r}, databranch, first datapoint"
+    return Design(
+        length=length,
+        diameter=2.0 * max(radii),
+        guides=guides,
+        neck=neck,
+        **state,
+        rail_length=rod[0],
+        rail_angle=abs(rod[1]),
+        curve=rows,
+        sources={
+            "payload.length": "nosecone, bodytube, transition: length",
+            "payload.diameter": "nosecone, bodytube, transition: radius",
+            "payload.mass": f"{branch}, {_STATE['mass']}",
+            "payload.mass_centre": f"{branch}, {_STATE['mass_centre']}",
+            "payload.inertia": f"{branch}, {_STATE['along']} and {_STATE['across']}",
+            "buttons": words,
+            "rail.end": f"simulation {simulation!r}, launchrodlength",
+            "gravity.inclination": f"simulation {simulation!r}, launchrodangle",
+            "thrust": f"simulation {simulation!r}, databranch, Time and Thrust",
+        },
+    )
+
+
+def _text(data: bytes) -> bytes:
+    if data[:4] == b"PK\x03\x04":
+        try:
+            with zipfile.ZipFile(io.BytesIO(data)) as archive:
+                names = [name for name in archive.namelist() if name.endswith(".ork")]
+                if not names:
+                    raise ValueError("an archive with a file .ork")
+                with archive.open(names[0]) as stream:
+                    found = stream.read(_LARGEST + 1)
+        except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError) as fault:
+            raise ValueError(f"a whole zip archive ({fault})") from fault
+    elif data[:2] == b"\x1f\x8b":
+        try:
+            with gzip.GzipFile(fileobj=io.BytesIO(data)) as stream:
+                found = stream.read(_LARGEST + 1)
+        except (OSError, EOFError) as fault:
+            raise ValueError(f"a whole gzip file ({fault})") from fault
+    else:
+        found = data
+    if len(found) > _LARGEST:
+        raise ValueError(f"at most {_LARGEST:,} bytes of XML")
+    return found
+
+
+def _root(text: bytes) -> ElementTree.Element:
+    def refuse(*_: object) -> None:
+        raise ValueError("XML without a document type")
+
+    parser = expat.ParserCreate()
+    parser.StartDoctypeDeclHandler = refuse
+    try:
+        parser.Parse(text, True)
+        root = ElementTree.fromstring(text)
+    except (expat.ExpatError, ElementTree.ParseError) as fault:
+        raise ValueError(f"valid XML ({fault})") from fault
+    if root.tag != "openrocket":
+        raise ValueError(f"a design of OpenRocket, with the element openrocket, not {root.tag}")
+    return root
+
+
+def _outside(root: ElementTree.Element) -> Iterator[tuple[ElementTree.Element, float, float]]:
+    """(component, place of its front end, length) of the body, from the nose through all stages."""
+    place = 0.0
+    for stage in root.findall("rocket/subcomponents/stage"):
+        for part in stage.findall("subcomponents/*"):
+            if part.tag in _OUTSIDE:
+                length = _number(part, "length") or 0.0
+                yield part, place, length
+                place += length
+
+
+def _radii(part: ElementTree.Element) -> list[float]:
+    found = [_number(part, name) for name in ("radius", "aftradius", "foreradius")]
+    return [radius for radius in found if radius is not None]
+
+
+def _guides(outside: list) -> tuple[tuple[float, ...], float | None, str]:
+    """Places of the buttons, or of the lugs where there are none, the neck of a button, and the field."""
+    buttons: list[float] = []
+    lugs: list[tuple[float, float]] = []
+    neck = None
+    for part, front, length in outside:
+        for item in part.iter():
+            if item.tag == "railbutton":
+                buttons += [place for place, _ in _places(item, front, length)]
+                neck = neck or _number(item, "innerdiameter")
+            elif item.tag == "launchlug":
+                lugs += _places(item, front, length)
+    if buttons:
+        return tuple(sorted(buttons)), neck, "railbutton: axialoffset, instanceseparation"
+    if len(lugs) == 1:
+        (place, own), *_ = lugs
+        return (place - 0.5 * own, place + 0.5 * own), None, "launchlug: its ends, as buttons"
+    return tuple(sorted(place for place, _ in lugs)), None, "launchlug: axialoffset, as buttons"
+
+
+def _places(item: ElementTree.Element, front: float, whole: float) -> list[tuple[float, float]]:
+    """(place of the middle, length) of each instance on a part at ``front`` of length ``whole``."""
+    own = (_number(item, "length") or 0.0) if item.tag == "launchlug" else 0.0
+    stated = item.find("axialoffset")
+    stated = item.find("position") if stated is None else stated
+    way = "top" if stated is None else stated.get("method", stated.get("type", "top"))
+    offset = 0.0 if stated is None else _float(stated.text) or 0.0
+    begin = {
+        "absolute": offset,
+        "bottom": front + whole - own + offset,
+        "middle": front + 0.5 * (whole - own) + offset,
+    }.get(way, front + offset)
+    count = int(_number(item, "instancecount") or 1)
+    step = _number(item, "instanceseparation") or 0.0
+    return [(begin + 0.5 * own + number * step, own) for number in range(min(count, 1000))]
+
+
+def _simulation(root: ElementTree.Element) -> tuple:
+    """Thrust over time, the state at launch, the conditions and the name of the first simulation with
+    data; None for the state without one."""
+    every = root.findall("simulations/simulation")
+    for each in every:
+        branch = each.find("flightdata/databranch")
+        names = [] if branch is None else branch.get("types", "").split(",")
+        points = [] if branch is None else branch.findall("datapoint")
+        if not points or not {*_STATE.values(), "Time", "Thrust"} <= set(names):
+            continue
+        rows = [dict(zip(names, (point.text or "").split(","))) for point in points]
+        state = {key: _float(rows[0].get(name)) for key, name in _STATE.items()}
+        curve = [(_float(row.get("Time")), _float(row.get("Thrust"))) for row in rows]
+        if None in state.values() or not all(value > 0.0 for value in state.values() if value):
+            continue
+        whole = tuple((t, f) for t, f in curve if t is not None and f is not None)
+        return whole, state, each.find("conditions"), each.findtext("name", "")
+    conditions = every[0].find("conditions") if every else None
+    return (), None, conditions, every[0].findtext("name", "") if every else ""
+
+
+def _number(part: ElementTree.Element | None, name: str) -> float | None:
+    return None if part is None else _float(part.findtext(name))
+
+
+def _float(text: str | None) -> float | None:
+    """A finite number; "auto 0.025" is the value that OpenRocket computed."""
+    try:
+        found = float((text or "").removeprefix("auto").strip())
+    except ValueError:
+        return None
+    return found if abs(found) < 1e9 else None
