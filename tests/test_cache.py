@@ -35,6 +35,7 @@ from tipoff.studies.limits import within
 from tipoff.studies.populations import answers
 from tipoff.workspace import kernel_marks
 from tipoff.workspace import store as store_module
+from tipoff.workspace import study as study_module
 from tipoff.workspace.run import Run
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
@@ -79,6 +80,7 @@ def run(folder, monkeypatch) -> Kept:
 
 def stage(folder, monkeypatch) -> Kept:
     """The result of a stage. That of another key would be in the same file."""
+    monkeypatch.setattr(study_module.time, "perf_counter", lambda: 0.0)
     made = []
 
     def ask(name):

@@ -107,7 +107,7 @@ def test_threads_that_read_the_first_unit_together_share_one_registry():
     """In a process that has read none. Without a lock each would load its own."""
     program = """
 import threading
-from tipoff.scenes.units import registry
+from tipoff.units import registry
 barrier, found = threading.Barrier(8), set()
 def read():
     barrier.wait()

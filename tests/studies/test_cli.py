@@ -190,7 +190,7 @@ def test_an_implausible_thrust_is_said_once_stored_and_on_the_page(tmp_path, stu
     assert words in stored["implausible"]
     acted = stored["conditions"][0]["thrust"]
     assert acted["impulse_requested_Ns"] == pytest.approx(np.trapezoid(force, time), rel=1e-12)
-    shown = call(*ONE, *asked).stdout
+    shown = call(*ONE, *asked, "--explain").stdout
     assert f"impulse requested {np.trapezoid(force, time):.7g} N s" in shown
     assert f"relative residual {acted['fit_relative_residual']:.3g}" in shown
     short = call(*HIGHFI, *asked, "--set", "duration=30 ms")  # the offset counts as thrust

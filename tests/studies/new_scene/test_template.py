@@ -290,9 +290,9 @@ def test_a_stranger_has_an_answer_without_editing_pads(mass, rail, tmp_path, mon
     assert made.exit_code == 0, made.output
     text = (tmp_path / "mine.toml").read_text()
     for line, own in (
-        ('place = "0.2313 m"', 'place = "0.305 m"'),
-        ('place = "1.734 m"', 'place = "1.646 m"'),
-        ('mass_centre = "1.734 m"', 'mass_centre = "1.71 m"'),
+        ('place = "0.23125 m"', 'place = "0.305 m"'),
+        ('place = "1.73438 m"', 'place = "1.646 m"'),
+        ('mass_centre = "1.73438 m"', 'mass_centre = "1.71 m"'),
         ('"85 deg"', '"84 deg"'),
     ):
         assert line in text

@@ -230,5 +230,5 @@ def test_a_part_below_its_error_is_not_resolved(value, shown):
     row |= {f"{name}_us": value for name in names} | {
         f"{name}_error_us": 0.5 if value > 0.0 else 30.0 for name in names
     }
-    text = document.terminal([parts.table({"rows": [row], "repeats": 5})])
+    text = document.markdown([parts.table({"rows": [row], "repeats": 5})])
     assert text.count(shown) == len(names)
