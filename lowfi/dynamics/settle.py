@@ -10,6 +10,8 @@ the motion over a time t from rest::
 so that a payload without contact falls towards its walls. The time grows as the forces vanish.
 """
 
+import itertools
+
 import numpy as np
 
 from tipoff.kernels import rotation
@@ -27,6 +29,7 @@ from tipoff.scenes.settled import no_rest
 LONG_AGO = -1e9  # s: no thrust acts yet
 AT_REST = 1e-10  # largest force over the weight, and moment over weight times reach
 _MOST = 400  # corrections
+_FURTHER = 60  # corrections towards a place of rest after one where the payload only slides slowly
 _NUDGE = 1e-9  # m, of a derivative
 _LONGEST = 2e-5  # m, of a correction
 _FIRST, _LAST = 1e-4, 1.0  # s, times of the damping
@@ -140,16 +143,16 @@ class _Rest:
         """The state at rest, None if none is found, and the forces that are left."""
         moved, over = np.zeros(self.masses.size), _FIRST
         sliding = None  # where only a small force along free directions was left
-        force = self.force(moved)
-        for _ in range(_MOST):
+        force, most = self.force(moved), _MOST
+        for done in itertools.count():
             left = self._left(force)
-            if not np.isfinite(left):
+            if not np.isfinite(left) or done == most:
                 break
             if left <= AT_REST:
                 return self.state(moved), force
             slopes = self._slopes(moved, force)
             if sliding is None and left <= _SLOW and self._slides(slopes, force):
-                sliding = moved
+                sliding, most = moved, min(done + _FURTHER, _MOST)
             matrix = np.diag(self.masses / over**2) - slopes
             change = np.linalg.solve(matrix, force)
             longest = float(np.abs(change / self.sizes).max())
