@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 import tipoff
 from tests.docs import pages
 from tests.formats.curves import adams_files, dyna_files
+from tests.studies.new_scene.test_openrocket import DESIGN
 from tipoff.kernels.rotation import matrices
 from tipoff.studies import droptest
 from tipoff.studies.cli import app
@@ -78,6 +79,7 @@ def folder(tmp_path_factory):
         if "time_s" in text
     )
     (place / "thrust.csv").write_text(curve)
+    (place / "design.ork").write_text(DESIGN)
     logs = Path(droptest.__file__).parent / "logs"
     for number in (0, 1):
         shutil.copy(logs / f"simulated{number}.csv", place)
@@ -141,7 +143,8 @@ def _small(words: tuple[str, ...]) -> list[str]:
 def test_a_command_runs(words, folder, monkeypatch, tmp_path):
     monkeypatch.chdir(folder)
     if words[0] == "new":  # its file must not be there yet
-        shutil.copy("thrust.csv", tmp_path)
+        for name in ("thrust.csv", "design.ork"):
+            shutil.copy(name, tmp_path)
         monkeypatch.chdir(tmp_path)
     said = CliRunner().invoke(app, _small(words))
     assert said.exit_code == 0, said.output
