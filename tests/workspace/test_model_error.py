@@ -8,6 +8,7 @@ import pytest
 import tipoff
 from tipoff.results.model_error import ModelError
 from tipoff.results.trajectory import Trajectory
+from tipoff.workspace import model_error
 
 TINY = tipoff.load("tiny")
 TAME = "phi0", "phi15", "phi35", "phi60", "phi90"
@@ -96,6 +97,20 @@ def test_each_part_is_a_change_of_the_numerics(walls):
         assert parts[name] == pytest.approx(change(run, moved), rel=1e-12)
     every = tipoff.run(scene, compliance=walls, modes=20)
     assert "rail modes" not in every.error.parts_deg_s
+
+
+def test_further_runs_take_the_kernel_of_the_run(walls, monkeypatch):
+    """A kernel is compiled for the number of patterns. A run with fewer patterns compiled another one, in 20 s of
+    the first run."""
+    kinds, execute = set(), model_error.execute
+
+    def recorded(run):
+        kinds.add((run.compliance.degree, run.numerics.known_degree))
+        return execute(run)
+
+    monkeypatch.setattr(model_error, "execute", recorded)
+    assert "pad patterns" in tipoff.run("tiny", compliance=walls).error.parts_deg_s
+    assert kinds == {(walls.degree, None)}
 
 
 def test_a_factor_on_the_mounts_is_kept():

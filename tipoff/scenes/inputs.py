@@ -1,15 +1,12 @@
 """The inputs of a scene: as written, resolved in SI, and the hash of those that determine a result."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tipoff.files import content_hash
 from tipoff.scenes import overrides as keys
 from tipoff.scenes.parts import expansion
 from tipoff.scenes.reading import CATALOG
-
-if TYPE_CHECKING:
-    pass
 
 # the flight after the exit does not change the ejection, and no solver reads [studies]
 _BESIDE = ("conditions", "agreement", "provenance")

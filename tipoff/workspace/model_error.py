@@ -27,7 +27,7 @@ from tipoff.files import content_hash
 from tipoff.lowfi.numerics import MOST_CELLS
 from tipoff.mechanics import instant
 from tipoff.mechanics.model_names import COMPLIANT
-from tipoff.mechanics.rail_compliance import LEAST_DEGREE
+from tipoff.mechanics.rail_compliance import LEAST_DEGREE, patterns
 from tipoff.results.model_error import ModelError, Range
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.rail_compliance import of_scene
@@ -72,7 +72,7 @@ def of(run: Run, nominal: Trajectory, moved: Disturbed) -> ModelError:
             return ModelError(not_known=f"{name}: {why}")
         change = instant.change(nominal.outcome, execute(changed).outcome)
         if change is None:
-            return ModelError(not_known=f"{name}: the run with others has no rates")
+            return ModelError(not_known=f"{name}: the run that shows its effect has no rates")
         parts[name] = change
     return ModelError(parts_deg_s=parts)
 
@@ -114,9 +114,12 @@ def _changed(run: Run) -> Iterator[tuple[str, Run | None]]:
     if (held := walls.frequency.shape[1]) > numerics.count:
         yield MODES, replace(run, numerics=replace(numerics, modes=held))
     degree = numerics.known_degree or walls.degree
-    other = degree + 1 if degree < walls.degree else degree - 1
-    if other >= LEAST_DEGREE:
-        yield PATTERNS, replace(run, numerics=replace(numerics, degree=other))
+    if degree < walls.degree:
+        yield PATTERNS, replace(run, numerics=replace(numerics, degree=degree + 1))
+    elif degree > LEAST_DEGREE:
+        # in the arrays of the degree of the run, whose kernel is compiled
+        fewer = walls.restricted(patterns.count(degree - 1))
+        yield PATTERNS, replace(run, scene=scene, compliance=fewer)
     cells = min(2 * numerics.cells, MOST_CELLS)
     yield CELLS, replace(run, numerics=replace(numerics, cells=cells))
 

@@ -68,7 +68,8 @@ PSAS = Launcher(
     ),
 )
 # Hedy: dry 17.2 kg with its centre 1.813 m from the tail; half of the 6.8 kg left at 1.4 s in each tank gives
-# 24.0 kg, a centre at 1.70 m and 19.7 kg m2. Buttons are published: 1.646 and 0.305 m from the tail.
+# 24.0 kg (23.7 kg in the mean over the 0.64 s on the rail), a centre at 1.70 m and 19.7 kg m2. Buttons are
+# published: 1.646 and 0.305 m from the tail.
 HEDY = Launcher(
     "hedy_2025",
     mass=23.7,

@@ -56,17 +56,17 @@ def lines(row: Single, made_with: str, study: Study, detail: Detail = Detail.ANS
     if row.disturbed:
         limit = verdicts.gates(study.scene).settled_rate_error_deg_s
         text += [f"  warning       {words}" for words in disturbed.warnings(row.disturbed, limit)]
-    return text + (_explained(row, study) if every else [])
+    text += _explained(row) if every else []
+    return [*text, f"  trajectory    {study.path(row.trajectory)}"]
 
 
-def _explained(row: Single, study: Study) -> list[str]:
+def _explained(row: Single) -> list[str]:
     """What the answer rests on, with its effect on the rates."""
     text = _parts(row)
     if row.disturbed:
         text += disturbed.lines(row.disturbed)
     text.append(f"  agreement     {row.agreement}")
     text.append(f"  took          {row.wall_s:.3g} s, {row.steps} steps")
-    text.append(f"  trajectory    {study.path(row.trajectory)}")
     return text
 
 
