@@ -137,13 +137,8 @@ def test_a_payload_on_compliant_rails_stays_at_rest(modes):
 def test_a_payload_that_is_free_to_slide_across_its_rail_stays(gradient, monkeypatch):
     """Under a weight along Z, with its mass centre to one side: the tilt of its pads leaves a small force along
     Y. Corrections followed it from wall to wall, and the scene was refused. All 400 were made."""
-    corrections, slopes = [], settle._Rest._slopes
-
-    def counted(*given):
-        corrections.append(1)
-        return slopes(*given)
-
-    monkeypatch.setattr(settle._Rest, "_slopes", counted)
+    calls, forces = [], settle.forces
+    monkeypatch.setattr(settle, "forces", lambda *given: (calls.append(1), forces(*given)))
     warm = {"thermal": {"mean": 5.0, "gradient": gradient}, "rail.material.expansion": 23.6e-6}
     beside = {"eccentricity": {"axial": 1e-4, "radial": np.radians(120.0)}}
     changed = FIXED | {"gravity": {"z": -G}, "mass_offset": beside, "rail.mount_stiffness": None}
@@ -155,7 +150,7 @@ def test_a_payload_that_is_free_to_slide_across_its_rail_stays(gradient, monkeyp
         1e-4 * np.sin(np.radians(60.0)), abs=5e-6
     )
     np.testing.assert_allclose(sums(run, asked)[:, 2], G, rtol=1e-5)
-    assert len(corrections) <= settle._FURTHER + 60
+    assert len(calls) < 1000  # six or seven for a correction
     assert np.abs(run.velocity[before, 1]).max() < 1e-3 * G * START
     assert np.abs(run.velocity[before, 2]).max() < 1e-7
 
