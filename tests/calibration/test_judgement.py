@@ -3,7 +3,6 @@ sound curves with noise or with the error of another model."""
 
 import dataclasses
 import functools
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -212,7 +211,7 @@ def test_a_kept_value_is_not_beside_the_interval_of_the_fit():
     assert found.values == [0.25e-3] and found.fitted != found.values
     ((low, high),) = found.with_model_error
     assert 0.5 * (low + high) == pytest.approx(found.fitted[0], rel=1e-9)
-    table = page.terminal(stage.fit_of(found, "calibration.toml"), Path())[0]
+    table = page.draw(stage.fit_of(found, "calibration.toml"))[1]
     heads = [getattr(column, "head", column) for column in table.columns]
     assert "kept, the scene's" in str(heads)
     same = dataclasses.replace(found, fitted=[])

@@ -14,7 +14,6 @@ import shutil
 import sys
 from collections.abc import Iterator
 from importlib import import_module
-from inspect import signature
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -56,6 +55,7 @@ STAGES = (
     "stability.stage",
     "sweeps.stage",
 )
+WITHOUT_COMMAND = ("nominal",)
 
 
 def modules() -> Iterator[tuple[ModuleType, Stage]]:
@@ -105,11 +105,10 @@ def texts() -> dict[str, str]:
         for section in registry.sections()
     }
     for module, stage in modules():
-        shown = import_module(f"{module.__package__}.page")
-        draw = getattr(shown, "terminal", None) if module.__name__.endswith(".stage") else None
-        if draw is not None and (result := page.results.get(stage.name)):
-            place = [OUT] * (len(signature(draw).parameters) - 1)  # where the files are said to lie
-            found[f"terminal/{stage.name}.txt"] = document.terminal(draw(result.result, *place))
+        if module.__name__.endswith(".stage") and stage.name not in WITHOUT_COMMAND:
+            draw = import_module(f"{module.__package__}.page").draw
+            result = page.results[stage.name].result
+            found[f"terminal/{stage.name}.txt"] = document.terminal(draw(result))
     group: Any = typer.main.get_command(cli.app)
     for name in sorted(group.commands):
         asked = CliRunner().invoke(cli.app, [name, "--help"])

@@ -1,6 +1,6 @@
 """The record of a study: its command, its results, its sections of the page."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
@@ -14,7 +14,7 @@ from tipoff.studies.commands.running import Output
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
     from tipoff.studies.report.page import Page
-    from tipoff.workspace.stage import Made
+    from tipoff.workspace.stage import Made, Stage
     from tipoff.workspace.study import Study
 
 
@@ -45,6 +45,20 @@ class Section(NamedTuple):
     draw: Callable[["Page"], "Sequence[Part]"]
     title: str
 
+    @classmethod
+    def of_stage(
+        cls,
+        stage: "Stage",
+        draw: "Callable[[Any], Sequence[Part]]",
+        anchor: str,
+        link: str,
+        title: str,
+        command: str = "",
+    ) -> "Section":
+        """The section that ``draw`` makes of the result of a ``stage``; without it, the ``command``
+        that makes it, by default the ``anchor``."""
+        return cls(anchor, link, lambda page: page.shown(stage, draw, command or anchor), title)
+
 
 class Contents(NamedTuple):
     """The results and sections of a study."""
@@ -73,9 +87,9 @@ class Question(Entry):
     a command in place of the one made from ``options``.
 
     The package has a module ``stage`` with ``run``, ``STAGE``, and ``stored`` if it replaces that
-    of ``STAGE``. It may have a module ``page`` with ``draw``, which makes the parts of the section
-    from a result, and ``terminal`` if the terminal shows other parts. Without it the tables of the
-    result are shown.
+    of ``STAGE``. It may have a module ``page`` with ``draw``, which makes of a result the parts that
+    the page and the terminal show. Without it they show the tables of the result. ``without``: the
+    common options that the command does not have.
     """
 
     def __init__(
@@ -87,6 +101,7 @@ class Question(Entry):
         options: type | None = None,
         always: bool = False,
         own: Callable[..., None] | None = None,
+        without: Collection[str] = (),
     ):
         name = package.rpartition(".")[2]
 
@@ -107,14 +122,10 @@ class Question(Entry):
             else:
                 study = request.study()
             found = stage.run(study, *([] if options is None else [options]))
-            shown = getattr(page, "terminal", page.draw)
-            return Output.of(found, shown, request.out)
+            return Output.of(found, page.draw, request.out)
 
         def contents() -> Contents:
             stage, page = modules()
-
-            def section(shown: "Page") -> "list[Part]":
-                return shown.shown(stage.STAGE, page.draw, name)
 
             def within(study: "Study", limits: tuple[str, ...]) -> "Made":
                 return stage.run(study, options(limits=limits) if options else None)
@@ -123,7 +134,7 @@ class Question(Entry):
             limited = "limits" in getattr(options, "__dataclass_fields__", ())
             return Contents(
                 (Result(stage.STAGE.name, stage.run, stored, within if limited else None),),
-                (Section(name, link, section, title),),
+                (Section.of_stage(stage.STAGE, page.draw, name, link, title),),
             )
 
-        super().__init__((own or command(name, text or "", options, answer),), contents)
+        super().__init__((own or command(name, text or "", options, answer, without),), contents)

@@ -28,7 +28,7 @@ from tipoff.studies.question import Contents, Entry, Result, Section
 # In the order of their commands; the report makes their results in this order.
 COMPARISON: tuple[Entry, ...] = (
     nominal.ENTRY,
-    mesh.ENTRY,
+    mesh.QUESTION,
     runs.ENTRY,
     calibration.ENTRY,
     agreement.ENTRY,
@@ -37,7 +37,7 @@ COMPARISON: tuple[Entry, ...] = (
     cost.QUESTION,
     stability.QUESTION,
     ablation.QUESTION,
-    convergence.ENTRY,
+    convergence.QUESTION,
     view.ENTRY,
 )
 ON_DEMAND: tuple[Entry, ...] = (single.ENTRY, ensemble.ENTRY)

@@ -46,7 +46,7 @@ def distributions(found: Sequence[Distribution]) -> list[Part]:
     """Verdicts on conditions that no single run can judge; empty without such conditions."""
     if not found:
         return []
-    table = distribution_page.verdicts_of(found)
+    table = distribution_page.summary(found).brief()
     title = (
         "Conditions judged as distributions (`make compare`): bound of the largest difference of a "
         "quantile, in margins. Agreement\nneeds less than 1. Springs are the control. "

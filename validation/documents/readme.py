@@ -152,7 +152,7 @@ def section(folder: Path) -> str:
     cost, blind = (read(folder / f"{name}.json") for name in ("cost_study", "blind"))
     parts: list[Part] = [
         _agreement(agreement),
-        *by_factor(agreement.interface),
+        *([by_factor(agreement.interface)] if agreement.interface else []),
         *_growth(agreement.growth),
         _speed(agreement),
     ]

@@ -173,11 +173,10 @@ def test_verdicts_are_on_the_page_in_markdown_and_in_the_terminal(study, monkeyp
     )
     for text in (
         document.markdown(page.at_factors(found)),
-        document.markdown(page.by_factor(found)),
-        document.terminal(page.by_factor(found)),
+        document.terminal(page.at_factors(found)),
     ):
         assert words in " ".join(text.split()) and "misses: " in text and "phi15" in text
-    assert page.at_factors([]) == page.by_factor([]) == []
+    assert page.at_factors([]) == []
 
 
 def test_a_scene_without_contact_has_no_interface(study):

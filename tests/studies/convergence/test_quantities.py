@@ -10,8 +10,6 @@ from tipoff import scenes
 from tipoff.studies.convergence import page, stresses
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.render import document
-from tipoff.studies.report.page import Page
-from tipoff.studies.runs.figures import Runs
 from tipoff.workspace import store as store_module
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
@@ -75,9 +73,7 @@ def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch
         None,
     )
     assert peak.order < 0.0 and "mesh-dependent" in peak.method
-    shown = document.markdown(
-        page.draw(Page(study.scene, study.folder, {"convergence": written}, Runs({}, {}, {}), {}))
-    )
+    shown = document.markdown(page.draw(written.result))
     assert "patch stress below 1 kHz" in shown and "mesh-dependent" in shown
 
 

@@ -78,7 +78,7 @@ def shown(found: certificate.Certificate) -> str:
         **dict(allowed=40, constants=Drawn(0, ()), margin=Margin(None, ""), rows=(row,)),
         **dict(map=None, certificate=found, evaluations=1),
     )
-    return terminal(page.terminal(made))
+    return terminal(page.draw(made))
 
 
 def test_a_reference_that_is_worse_is_seen(study, found):

@@ -185,7 +185,7 @@ def test_limits_that_no_tolerance_or_every_tolerance_keeps_are_reported(study, m
             state == "none"
         )
         assert row_of(found, "thrust_eccentricity").nominal.state == "found"
-        shown = document.markdown(pictures.terminal(found))
+        shown = document.markdown(pictures.draw(found))
         assert ("exceeded even at zero" in shown) == (state == "none")
     monkeypatch.setattr(
         limits.constants,
@@ -254,7 +254,7 @@ def test_section_of_the_page(study, found):
         and "assumed" in shown
         and "thrust misalignment" in shown
     )
-    assert tables.terminal(pictures.table_of(found)) in document.terminal(pictures.terminal(found))
+    assert tables.terminal(pictures.table_of(found)) in document.terminal(pictures.draw(found))
     assert {f"limits-{name}.{kind}" for name in ("curves", "map") for kind in ("png", "svg")} == {
         path.name for path in study.path("figures").iterdir()
     }

@@ -232,7 +232,7 @@ def test_the_search_its_margin_and_its_check_are_of_one_model(study, watch, monk
         assert 1.0 / 1.013 < 1e-3 * row.nominal.tolerance / exact < 1.0 + 1e-9
         assert 1.0 / 1.03 < 1e-3 * row.model.tolerance / (exact * 7.0 / 8.0) < 1.0 + 1e-9
     words = "no modes" if chosen == 0 else "3 modes"
-    shown = " ".join(terminal(limits_page.terminal(found)).split())
+    shown = " ".join(terminal(limits_page.draw(found)).split())
     assert f"model compliant with {words} of each rail (enough for" in shown
 
 

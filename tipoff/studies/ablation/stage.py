@@ -43,10 +43,10 @@ class VariantRun:
     status: Annotated[str, Column("status")]
     time_s: Annotated[float, Column("time", "s")]
     time_ratio: Annotated[float, Column("time ratio", form=".2f")]  # to that with all effects
-    ns_per_step: Annotated[float, Column("time per step", "ns", ",.0f")]
-    settled_rate_deg_s: Annotated[Rates | None, Column("settled x, y, z", "deg/s")]
+    ns_per_step: Annotated[float, Column("time per step", "ns", ",.0f", detail=True)]
+    settled_rate_deg_s: Annotated[Rates | None, Column("settled x, y, z", "deg/s", detail=True)]
     settled_rate_change_deg_s: Annotated[Rates | None, Column("change x, y, z", "deg/s", "+.3g")]
-    evaluated: Annotated[tuple[str, ...], Column("effects evaluated", nothing="none")]
+    evaluated: Annotated[tuple[str, ...], Column("effects evaluated", nothing="none", detail=True)]
 
 
 @dataclass(frozen=True)

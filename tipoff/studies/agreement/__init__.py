@@ -12,7 +12,14 @@ def _load() -> Contents:
             Result("rails", stored=lambda study: other_rails.beside(study.folder)),
         ),
         (
-            Section("agreement-section", "Agreement", page.draw, "Agreement with the reference"),
+            Section.of_stage(
+                stage.STAGE,
+                page.draw,
+                "agreement-section",
+                "Agreement",
+                "Agreement with the reference",
+                "compare",
+            ),
             Section(
                 "growth-section", "Growth of 1 µm", growth_page.draw, "Growth of a 1 µm disturbance"
             ),

@@ -12,11 +12,10 @@ from tipoff.studies.agreement.equivalence import AXES, CONFIDENCE, MARGIN_SHARE,
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.column import of_record
 from tipoff.studies.render.document import Figure, Fold, Part
-from tipoff.studies.render.palette import AMBER, NAVY, VERMILION
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.palette import AMBER, VERMILION
+from tipoff.studies.render.table import Cells, Column, Table
 
 Shown = tuple[Distribution, Verdict]
-_VERDICT = ("verdict", lambda shown: shown[1].verdict)
 _SHOWN = {"compliant": (VERMILION, "-"), "calibrated": (AMBER, "--")}  # colour, dash
 _CAPTION = (
     "Share of the neighbours of {condition} with a smaller settled rate: {count} runs of the reference, "
@@ -66,43 +65,39 @@ def picture(item: Distribution, name: str = "distributions") -> Chart:
         values = sorted(rates[place] for rates in item.settled_deg_s)
         steps = [value for value in values for _ in (0, 1)]
         up_to = [(number + up) / len(values) for number in range(len(values)) for up in (0, 1)]
-        lines = [
-            Line(steps, up_to, name=FINITE_ELEMENTS, colour=NAVY, width=3.0, dash="-", opacity=0.6)
-        ]
+        lines = [Line(steps, up_to, FINITE_ELEMENTS, width=3.0, opacity=0.6)]
         for model, (colour, dash) in _SHOWN.items():
             own = item.models.get(model)
             if own and (rates := own.quantiles.rates_deg_s):
                 shares = own.quantiles.shares
-                lines.append(Line(rates[place], shares, name=own.title, colour=colour, dash=dash))
-        panels.append(
-            Panel(
-                f"{item.condition}, rate {axis}",
-                "settled rate (deg/s)",
-                y_label="share",
-                lines=lines,
-            )
-        )
+                lines.append(Line(rates[place], shares, own.title, colour, dash=dash))
+        title = f"{item.condition}, rate {axis}"
+        panels.append(Panel(title, "settled rate (deg/s)", "share", lines))
     return Chart(name, panels, columns=3, height=280)
-
-
-_BEFORE: tuple[tuple[Column | str, Callable[[Shown], Any]], ...] = (
-    ("condition", lambda shown: shown[0].condition),
-    ("model", lambda shown: shown[1].title),
-    ("neighbours", lambda shown: shown[0].neighbours),
-)
 
 
 def summary(found: Sequence[Distribution], name: str = "distributions") -> Table:
     """One row for each condition and model: the comparison with the largest bound."""
-    columns = (
-        *_BEFORE,
-        ("rate, quantile", _of_worst(lambda item: f"{item.axis}, {100.0 * item.share:g} %")),
-        (Column("reference", "deg/s"), _of_worst(attrgetter("reference_deg_s"))),
-        (Column("difference", "deg/s", "+.2g"), _of_worst(attrgetter("difference_deg_s"))),
-        (Column("margin", "deg/s", ".2g"), _of_worst(attrgetter("margin_deg_s"))),
-        (Column("bound of the difference", "margins", ".2g"), _of_worst(attrgetter("bound"))),
-        (Column("reference known within", "margins", ".2g"), _of_worst(attrgetter("width"))),
-        _VERDICT,
+    columns: Cells = (
+        ("condition", lambda shown: shown[0].condition),
+        ("model", lambda shown: shown[1].title),
+        ("neighbours", lambda shown: shown[0].neighbours),
+        (
+            Column("rate, quantile", detail=True),
+            _of_worst(lambda item: f"{item.axis}, {100.0 * item.share:g} %"),
+        ),
+        (Column("reference", "deg/s", detail=True), _of_worst(attrgetter("reference_deg_s"))),
+        (
+            Column("difference", "deg/s", "+.2g", detail=True),
+            _of_worst(attrgetter("difference_deg_s")),
+        ),
+        (Column("margin", "deg/s", ".2g", detail=True), _of_worst(attrgetter("margin_deg_s"))),
+        (Column("bound", "margins", ".2g"), _of_worst(attrgetter("bound"))),
+        (
+            Column("reference known within", "margins", ".2g", detail=True),
+            _of_worst(attrgetter("width")),
+        ),
+        ("verdict", lambda shown: shown[1].verdict),
     )
     note = (
         f"The quantile with the largest bound of its difference. Agreement: all {CONFIDENCE:.0%} "
@@ -114,15 +109,6 @@ def summary(found: Sequence[Distribution], name: str = "distributions") -> Table
     rows = _pairs(found)
     kinds = [kind(own.judgement) for _, own in rows]
     return Table.of(rows, columns, notes=(note,), name=name, kinds=kinds, dense=True)
-
-
-def verdicts_of(found: Sequence[Distribution]) -> Table:
-    """The same for the terminal: the largest bound of each model, and its verdict."""
-    bound = Column("bound", "margins", ".2g"), _of_worst(attrgetter("bound"))
-    title = (
-        "Conditions judged as distributions over neighbours. Both models run on the coarse mesh."
-    )
-    return Table.of(_pairs(found), (*_BEFORE, bound, _VERDICT), title=title)
 
 
 def kind(judgement: str) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.studies.agreement import stage
 from tipoff.studies.agreement.growth import Growth
-from tipoff.studies.render.chart import Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel, marks
 from tipoff.studies.render.document import Bullets, Figure, Part
 from tipoff.studies.render.palette import NAVY, VERMILION
 from tipoff.studies.render.table import Column, Table
@@ -51,16 +51,9 @@ def picture(found: Sequence[Growth]) -> Chart:
             for line in _lines(item, look, marker)
         ]
         if lines:
-            panels.append(
-                Panel(
-                    condition,
-                    "time after ignition (ms)",
-                    y_label="separation (deg/s)",
-                    lines=lines,
-                    band=(own[0].gate_deg_s, "below the limit of agreement"),
-                    log_y=True,
-                )
-            )
+            band = own[0].gate_deg_s, "below the limit of agreement"
+            axes = "time after ignition (ms)", "separation (deg/s)"
+            panels.append(Panel(condition, *axes, lines, band=band, log_y=True))
     return Chart("growth", panels, columns=min(3, max(1, len(panels))), height=270)
 
 
@@ -74,30 +67,11 @@ def _lines(item: Growth, look: tuple[str, float, str, float], marker: str) -> li
     if not points:
         return []
     times, separations = zip(*points)
-    colour, width, dash, opacity = look
-    curve = Line(
-        times,
-        separations,
-        name=item.model,
-        colour=colour,
-        width=width,
-        dash=dash,
-        opacity=opacity,
-    )
+    curve = Line(times, separations, item.model, *look)
     if item.horizon_s is None:
         return [curve]
-    return [
-        curve,
-        Line(
-            [1e3 * item.horizon_s],
-            [item.gate_deg_s],
-            name=f"horizon, {item.model}",
-            colour=colour,
-            width=1.0,
-            dash="",
-            marker=marker,
-        ),
-    ]
+    name = f"horizon, {item.model}"
+    return [curve, marks([1e3 * item.horizon_s], [item.gate_deg_s], name, look[0], marker)]
 
 
 def tables(found: Sequence[Growth]) -> list[Part]:

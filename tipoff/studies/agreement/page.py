@@ -1,22 +1,20 @@
-"""Agreement with the reference on the page."""
+"""Agreement with the reference."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tipoff.comparison.metrics import CHANNELS
-from tipoff.studies.agreement import distribution_page, interface, stage, verdicts
+from tipoff.studies.agreement import distribution_page, interface, verdicts
 from tipoff.studies.agreement.stage import Agreement, Simpler
 from tipoff.studies.agreement.verdicts import JudgedCondition
 from tipoff.studies.render.column import of_record
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Column, Table, percent
 from tipoff.studies.render.uncertain import LEAST, Measured, number, rounded
-
-if TYPE_CHECKING:
-    from tipoff.studies.report.page import Page
 
 
 def starred(shown: str, measured_here: bool) -> str:
@@ -34,19 +32,27 @@ def _rounded(uncertainty: float | None) -> str:
     return rounded(uncertainty, uncertainty)
 
 
+_RATINGS = (
+    "ISO 18571 is the mean rating of the three rates (1 is perfect). Sprague and Geers (S-G) is over the "
+    "three rates together."
+)
+_percent = partial(Column, unit="%", form=".2g", scale=100.0, detail=True)
 _COLUMNS: tuple[Any, ...] = (
     "condition",
-    ("role", lambda row: row.role.replace("_", " ")),
+    (Column("role", detail=True), lambda row: row.role.replace("_", " ")),
     "rate_relative_l2",
     (
-        Column("floor L2", "%", ".2g", 100.0),
+        _percent("floor L2"),
         lambda row: starred(percent(row.floor_l2, ".2g"), row.floor_measured_here),
     ),
-    (Column("v_x L2", "%", ".2g", 100.0), attrgetter("velocity_relative_l2")),
+    (_percent("v_x L2"), attrgetter("velocity_relative_l2")),
     (Column("settled error", "deg/s"), _to_floor("settled_rate_error_deg_s")),
-    (Column("error x, y, z", "deg/s", "+.2g"), _to_floor("settled_rate_error_xyz_deg_s")),
     (
-        Column("floor", "deg/s"),
+        Column("error x, y, z", "deg/s", "+.2g", detail=True),
+        _to_floor("settled_rate_error_xyz_deg_s"),
+    ),
+    (
+        Column("floor", "deg/s", detail=True),
         lambda row: starred(_rounded(row.floor_deg_s), row.floor_measured_here),
     ),
     (
@@ -55,25 +61,20 @@ _COLUMNS: tuple[Any, ...] = (
             _rounded(row.reference_uncertainty_deg_s), row.reference_uncertainty_measured_here
         ),
     ),
-    (Column("ISO 18571", form=".3f"), attrgetter("iso18571")),
-    (Column("S-G magnitude", "%", ".2g", 100.0), attrgetter("sprague_geers_magnitude")),
-    (Column("S-G phase", "%", ".2g", 100.0), attrgetter("sprague_geers_phase")),
+    (Column("ISO 18571", form=".3f", detail=True), attrgetter("iso18571")),
+    (_percent("S-G magnitude"), attrgetter("sprague_geers_magnitude")),
+    (_percent("S-G phase"), attrgetter("sprague_geers_phase")),
     *("judged_as", "verdict"),
 )
 
 
-def draw(page: "Page") -> list[Part]:
-    """The section, or how to make its result."""
-    return page.shown(stage.STAGE, agreement, "compare")
-
-
-def agreement(found: Agreement) -> list[Part]:
+def draw(found: Agreement) -> list[Part]:
     """The agreement tables, first that of compliant contact; every row has its floor and the
     uncertainty of the reference."""
     return [
         "Compliant contact with the rail compliance and without fitted constants. The role is "
         f"that of the condition in the calibration of springs. {summary(found.compliant)}.",
-        judged(found.compliant, "agreement", _notes(found)),
+        replace(judged(found.compliant, "agreement", _notes(found)), details=(_RATINGS,)),
         _further(found.compliant),
         _simpler(found),
         *distribution_page.parts(found.distributions, found.clearance_change_m),
@@ -85,21 +86,6 @@ def agreement(found: Agreement) -> list[Part]:
         Fold("Before calibration", [judged(found.uncalibrated, "agreement-uncalibrated")]),
         _evidence(found),
     ]
-
-
-def terminal(found: Agreement) -> list[Part]:
-    """Verdicts on compliant contact, and at other values of the interface stiffness."""
-    under, alike = found.rail_compliance, found.distributions
-    table = Table.of_records(
-        found.compliant,
-        *("condition", "rate_relative_l2", "settled_rate_error_deg_s"),
-        *("reference_uncertainty_deg_s", "judged_as", "verdict"),
-        kind=JudgedCondition,
-        title=f"Compliant contact: {summary(found.compliant)}.",
-        notes=(under["words"],) if under else (),
-    )
-    distributions = [distribution_page.verdicts_of(alike)] if alike else []
-    return [table, *distributions, *by_factor(found.interface)]
 
 
 def _notes(found: Agreement) -> tuple[str, ...]:
@@ -117,9 +103,7 @@ def _notes(found: Agreement) -> tuple[str, ...]:
         "judged as a distribution if its reference is not converged, or if 1 µm changes a "
         "settled rate by more than the limit of agreement.",
         "Settled errors are rounded to the floor. A star marks a value that is not measured on "
-        "this condition: the largest value of other conditions. ISO 18571 is the mean rating of "
-        "the three rates (1 is perfect). Sprague and Geers (S-G) is over the three rates "
-        "together.",
+        "this condition: the largest value of other conditions.",
     )
 
 
@@ -151,7 +135,8 @@ def _simpler(found: Agreement) -> Fold:
 
 
 def at_factors(found: Sequence[interface.AtStiffness]) -> list[Part]:
-    """Both models at other values of the interface stiffness; empty without contact."""
+    """Both models at other values of the interface stiffness, with a line for each condition and in
+    full; empty without contact."""
     if not found:
         return []
     kinds = [distribution_page.kind(item.judgement) for item in found]
@@ -166,15 +151,13 @@ def at_factors(found: Sequence[interface.AtStiffness]) -> list[Part]:
         found, *names, "verdict", notes=(note,), name="interface", kinds=kinds, dense=True
     )
     return [
-        f"Other values of the interface stiffness: {stiffnesses(found)}.",
+        by_factor(found),
         Fold("Agreement at a quarter, once and four times the interface stiffness", [table]),
     ]
 
 
-def by_factor(found: Sequence[interface.AtStiffness]) -> list[Part]:
-    """The same with a line for each condition; empty if the models were not compared."""
-    if not found:
-        return []
+def by_factor(found: Sequence[interface.AtStiffness]) -> Table:
+    """Errors and verdicts at other values of the interface stiffness, a line for each condition."""
     factors = list(dict.fromkeys(item.factor for item in found))
     rows = []
     for name in dict.fromkeys(item.condition for item in found):
@@ -191,7 +174,7 @@ def by_factor(found: Sequence[interface.AtStiffness]) -> list[Part]:
         "the coarse mesh\n(rate L2 in %; largest error of a settled rate in deg/s): "
         f"{stiffnesses(found)}."
     )
-    return [Table(heads, rows, title=title)]
+    return Table(heads, rows, title=title)
 
 
 def stiffnesses(found: Sequence[interface.AtStiffness]) -> str:

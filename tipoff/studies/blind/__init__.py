@@ -8,17 +8,11 @@ compares files of other codes.
   tipoff compare --blind 8
 """
 
-from typing import TYPE_CHECKING
-
 from tipoff.studies.blind.options import Options
 from tipoff.studies.commands.declared import command
 from tipoff.studies.commands.request import Request
 from tipoff.studies.commands.running import Output
 from tipoff.studies.question import Contents, Entry, Result, Section
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
-    from tipoff.studies.report.page import Page
 
 
 def _answer(request: Request, asked: Options) -> Output:
@@ -26,13 +20,13 @@ def _answer(request: Request, asked: Options) -> Output:
         from tipoff.studies.blind import page as drawn
         from tipoff.studies.blind import stage as blind
 
-        return Output.of(blind.run(request.study(), asked), drawn.terminal, request.out)
+        return Output.of(blind.run(request.study(), asked), drawn.draw, request.out)
     from tipoff.studies.agreement import page, stage
     from tipoff.studies.agreement.options import Options as OfScene
 
     _require(asked)
     found = stage.run(request.study(), OfScene(asked.neighbours))
-    return Output.of(found, page.terminal, request.out)
+    return Output.of(found, page.draw, request.out)
 
 
 def _require(asked: Options) -> None:
@@ -53,12 +47,10 @@ def _load() -> Contents:
     from tipoff.studies.blind import page, stage
     from tipoff.studies.blind.options import CASES
 
-    def draw(shown: "Page") -> "list[Part]":
-        return shown.shown(stage.STAGE, page.draw, f"compare --blind {CASES}")
-
+    title, again = "Agreement on blind conditions", f"compare --blind {CASES}"
     return Contents(
         (Result(stage.NAME, stage.run, stage.STAGE.stored),),
-        (Section(stage.NAME, "Blind", draw, "Agreement on blind conditions"),),
+        (Section.of_stage(stage.STAGE, page.draw, stage.NAME, "Blind", title, again),),
     )
 
 

@@ -1,12 +1,10 @@
-"""Agreement on blind conditions on the page and in the terminal."""
+"""Agreement on blind conditions."""
 
 import math
-from operator import itemgetter
 
 from tipoff.studies.agreement import distribution_page
 from tipoff.studies.agreement.page import judged, summary
 from tipoff.studies.blind.stage import Blind
-from tipoff.studies.render.column import Column
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Table
 
@@ -35,25 +33,6 @@ def draw(found: Blind) -> list[Part]:
         ),
         Fold("Drawn conditions", [_drawn(found.conditions)]),
     ]
-
-
-def terminal(found: Blind) -> list[Part]:
-    """The verdicts for the terminal."""
-    rows = [("calibrated", row) for row in found.calibrated]
-    rows += [("compliant", row) for row in found.compliant]
-    columns = (
-        ("model", itemgetter(0)),
-        ("condition", lambda pair: pair[1].condition),
-        (Column("rate L2", "%", scale=100.0), lambda pair: pair[1].rate_relative_l2),
-        (Column("settled error", "deg/s"), lambda pair: pair[1].settled_rate_error_deg_s),
-        (Column("reference ±", "deg/s"), lambda pair: pair[1].reference_uncertainty_deg_s),
-        ("judged as", lambda pair: pair[1].judged_as),
-        ("verdict", lambda pair: pair[1].verdict),
-    )
-    title = f"{len(found.conditions)} conditions drawn with seed {found.seed}"
-    table = Table.of(rows, columns, title=title)
-    alike = found.distributions
-    return [table, *([distribution_page.verdicts_of(alike)] if alike else [])]
 
 
 def _drawn(conditions: dict) -> Table:

@@ -13,8 +13,17 @@ def _load() -> Contents:
             Result("calibration", stage.run),
         ),
         (
-            Section("compliance", "Compliance", compliance_page.draw, "Rail compliance"),
-            Section("calibration", "Calibration", page.draw, "Calibration"),
+            Section.of_stage(
+                compliance.STAGE,
+                compliance_page.draw,
+                "compliance",
+                "Compliance",
+                "Rail compliance",
+                "calibrate",
+            ),
+            Section.of_stage(
+                stage.STAGE, page.draw, "calibration", "Calibration", "Calibration", "calibrate"
+            ),
         ),
     )
 

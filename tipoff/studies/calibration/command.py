@@ -1,5 +1,6 @@
 """``tipoff calibrate``."""
 
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -12,6 +13,7 @@ from tipoff.studies.commands.options import (
 )
 from tipoff.studies.commands.request import Request, scene_command
 from tipoff.studies.commands.running import Output, quantity
+from tipoff.studies.commands.running import files as written
 
 
 @scene_command()
@@ -90,7 +92,7 @@ def calibrate(
     rate_y=WY, rate_z=WZ" --units "time=s, velocity_x=mm/s, rate=deg/s"
     """
     from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
-    from tipoff.studies.calibration import page, stage
+    from tipoff.studies.calibration import compliance_page, page, stage
 
     start = quantity("--settled-from", settled_from, "s", "44 ms")
     files = stage.named(reference or [], condition, start)
@@ -105,6 +107,11 @@ def calibrate(
     else:
         both = stage.of_models(study, model)
         documents = {name: made.document for name, made in both.items()}
-        parts = page.of_models({name: made.result for name, made in both.items()}, study.folder)
+        drawn: dict[str, Callable] = {"compliance": compliance_page.draw, "springs": page.draw}
+        parts = [
+            part
+            for name, made in both.items()
+            for part in (*drawn[name](made.result), "\n".join(written(made.document, request.out)))
+        ]
         return Output({"scene": study.scene.name, **documents}, lambda _: parts)
-    return Output.of(found, lambda found: page.terminal(found, study.folder))
+    return Output.of(found, page.draw, request.out)

@@ -1,19 +1,15 @@
 """Rail compliance on the page: displacement of each wall under a force on it and under a force on
 the other wall."""
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
-from tipoff.studies.calibration import compliance
-from tipoff.studies.calibration.compliance import UnderPad
+from tipoff.studies.calibration.compliance import Compliance, UnderPad
 from tipoff.studies.render.chart import Chart, Line, Panel
-from tipoff.studies.render.document import Figure, Part
+from tipoff.studies.render.document import Figure, Missing, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table
-
-if TYPE_CHECKING:
-    from tipoff.studies.report.page import Page
 
 _CAPTION = (
     "Static displacement of a wall, averaged over the face of a rear pad, per force spread evenly "
@@ -26,59 +22,29 @@ _DIRECT, _CROSS = (NAVY, VERMILION, TEAL), (AMBER, GREY)
 _LOOKS = ((5.0, "-", 0.35), (1.5, "-", 1.0), (1.5, ":", 1.0))  # width, dash, opacity
 
 
-def draw(page: "Page") -> list[Part]:
-    """The curves and their extremes; empty for a scene without contact."""
-    found = page.result(compliance.STAGE)
-    if found is None or (under := found.under_a_pad) is None or found.element_size_m is None:
-        return []
+def draw(found: Compliance) -> list[Part]:
+    """The curves and their extremes."""
+    if (under := found.under_a_pad) is None or found.element_size_m is None:
+        return [Missing("No contact: no compliance.")]
     caption = _CAPTION.format(size=1e3 * found.element_size_m)
-    if found.elements:
-        caption += f" Elements: {found.elements['words']}."
-    return [Figure(picture(under), caption), table(under)]
+    notes = (f"Elements: {found.elements['words']}.",) if found.elements else ()
+    return [Figure(picture(under), caption), replace(table(under), notes=notes)]
 
 
 def picture(found: UnderPad) -> Chart:
     """Compliance over the place of the pad, mounts shaded."""
     place = 1e3 * np.array(found.place_m)
+    direct, cross = found.direct_m_per_n.items(), found.cross_m_per_n.items()
     lines = [
-        Line(
-            place,
-            1e9 * np.array(values),
-            name=f"{name} wall, force on itself",
-            colour=colour,
-            width=width,
-            dash=dash,
-            opacity=opacity,
-        )
-        for (name, values), colour, (width, dash, opacity) in zip(
-            found.direct_m_per_n.items(), _DIRECT, _LOOKS
-        )
+        Line(place, 1e9 * np.array(values), f"{name} wall, force on itself", colour, *look)
+        for (name, values), colour, look in zip(direct, _DIRECT, _LOOKS)
     ]
-    lines += [
-        Line(
-            place,
-            1e9 * np.array(values),
-            name=f"{' wall, force on '.join(name.split())}",
-            colour=colour,
-            width=2.0,
-            dash="--",
-        )
-        for (name, values), colour in zip(found.cross_m_per_n.items(), _CROSS)
-    ]
+    for (name, values), colour in zip(cross, _CROSS):
+        words = " wall, force on ".join(name.split())
+        lines.append(Line(place, 1e9 * np.array(values), words, colour, 2.0, "--"))
     mounts = tuple((1e3 * low, 1e3 * high) for low, high in found.mounts_m)
-    return Chart(
-        "compliance",
-        [
-            Panel(
-                "",
-                "middle of the pad along X (mm)",
-                y_label="compliance (nm/N)",
-                lines=lines,
-                spans=mounts,
-            )
-        ],
-        height=320,
-    )
+    axes = "middle of the pad along X (mm)", "compliance (nm/N)"
+    return Chart("compliance", [Panel("", *axes, lines, spans=mounts)], height=320)
 
 
 def table(found: UnderPad) -> Table:

@@ -1,14 +1,12 @@
-"""Error of the reference on the page and in the terminal: settled rates over element size, and
-tables of the refinements and changes."""
+"""Error of the reference: settled rates over element size, and tables of the refinements and changes."""
 
 from collections.abc import Sequence
 from operator import attrgetter, itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tipoff.comparison.extrapolation import NOT_CONVERGED
 from tipoff.highfi.numerics import Numerics
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.convergence import stage
 from tipoff.studies.convergence.quantities import RATE
 from tipoff.studies.convergence.stage import Change, Convergence, Refined
 from tipoff.studies.render.chart import Chart, Line, Panel
@@ -16,9 +14,6 @@ from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AXIS_COLOURS, GREY
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.render.uncertain import LEAST, Measured, number
-
-if TYPE_CHECKING:
-    from tipoff.studies.report.page import Page
 
 _RATES = (
     "Condition {condition}. Settled rates over element size; dotted: uncertainty of the finest "
@@ -36,19 +31,11 @@ _RIPPLE = (
 )
 
 
-def draw(page: "Page") -> list[Part]:
-    """The section; empty without a result, because a result takes minutes."""
-    found = page.result(stage.STAGE)
-    if found is None:
-        return []
+def draw(found: Convergence) -> list[Part]:
+    """The figure, the sentences, and the tables."""
     chart = picture(found)
     figure = [Figure(chart, _RATES.format(condition=found.condition))] if chart.panels else []
     return [*figure, Bullets(sentences(found)), *tables(found), *_changed(found)]
-
-
-def terminal(found: Convergence) -> list[Part]:
-    """The sentences and the tables of the refinements."""
-    return [Bullets(sentences(found)), *tables(found)]
 
 
 def sentences(found: Convergence) -> list[str]:
@@ -121,20 +108,13 @@ def picture(found: Convergence) -> Chart:
         values = [value for value in row.values if value is not None]
         if len(values) < len(sizes):
             continue
-        lines = [
-            Line(sizes, values, name="finite elements", colour=colour, marker="o", legend=False)
-        ]
-        if row.uncertainty is not None:
-            bounds = values[-1] - row.uncertainty, values[-1] + row.uncertainty
-            words = "uncertainty of the finest mesh"
-            lines = [
-                *(
-                    Line([0.0, sizes[0]], [end, end], name=words, colour=GREY, width=1.1, dash=":")
-                    for end in bounds
-                ),
-                *lines,
-            ]
-        panels.append(Panel(row.quantity, "element size (mm)", y_label="rate (deg/s)", lines=lines))
+        lines = [Line(sizes, values, "finite elements", colour, marker="o", legend=False)]
+        for end in (-1.0, 1.0) if row.uncertainty is not None else ():
+            bound = [values[-1] + end * (row.uncertainty or 0.0)] * 2
+            lines.append(
+                Line([0.0, sizes[0]], bound, "uncertainty of the finest mesh", GREY, 1.1, ":")
+            )
+        panels.append(Panel(row.quantity, "element size (mm)", "rate (deg/s)", lines))
     return Chart("convergence", panels, columns=3, height=300)
 
 

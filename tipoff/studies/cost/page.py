@@ -1,4 +1,4 @@
-"""Error over wall time on the page."""
+"""Error over wall time."""
 
 from collections.abc import Callable
 from operator import attrgetter, itemgetter
@@ -8,9 +8,9 @@ from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.cost import choice
 from tipoff.studies.cost.results import BY_MODES, Cost, Match, Point
-from tipoff.studies.render.chart import Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel, marks
 from tipoff.studies.render.column import Column, of_record
-from tipoff.studies.render.document import Figure, Notice, Part
+from tipoff.studies.render.document import Figure, Fold, Notice, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Table
 
@@ -36,11 +36,26 @@ _LOOKS = (
 
 
 def draw(found: Cost) -> list[Part]:
-    """Errors over wall time."""
+    """Errors over wall time, the points of the Pareto front, of which each is the fastest with its
+    accuracy, and for each surrogate the mesh with the same error."""
+    best = sorted((point for point in found.points if point.pareto), key=lambda item: item.wall_s)
+    title = (
+        f"The fastest model of each accuracy, condition {found.condition}, "
+        f"{len(best)} of {len(found.points)} measured points:"
+    )
+    matched = "Each surrogate, and the fastest finite-element mesh whose error is not larger:"
+    kinds = ["best" if point.pareto else "" for point in found.points]
+    notes = ("Bold: points of the Pareto front.",)
+    columns = (*_POINTS, "integration_error_deg_s")
     return [
         *_unranked(found),
         Figure(picture(found), _ERRORS.format(condition=found.condition)),
-        *tables(found),
+        Table.of_records(best, *_POINTS, title=title, kind=Point),
+        Table.of_records(found.matched, *_MATCHES, title=matched, kind=Match),
+        Fold(
+            "All measured points",
+            [Table.of_records(found.points, *columns, kinds=kinds, notes=notes)],
+        ),
     ]
 
 
@@ -67,28 +82,6 @@ _MATCHES = (
 )
 
 
-def terminal(found: Cost) -> list[Part]:
-    """The points of the Pareto front: each is the fastest with its accuracy."""
-    best = sorted((point for point in found.points if point.pareto), key=lambda item: item.wall_s)
-    title = (
-        f"The fastest model of each accuracy, condition {found.condition}, "
-        f"{len(best)} of {len(found.points)} measured points:"
-    )
-    return [Table.of_records(best, *_POINTS, title=title, kind=Point), *_unranked(found)]
-
-
-def tables(found: Cost) -> list[Part]:
-    """Errors and wall times of all points, and for each surrogate the mesh with the same error."""
-    kinds = ["best" if point.pareto else "" for point in found.points]
-    notes = ("Bold: points of the Pareto front.",)
-    columns = (*_POINTS, "integration_error_deg_s")
-    title = "Each surrogate, and the fastest finite-element mesh whose error is not larger:"
-    return [
-        Table.of_records(found.points, *columns, kinds=kinds, notes=notes),
-        Table.of_records(found.matched, *_MATCHES, title=title, kind=Match),
-    ]
-
-
 def picture(cost: Cost) -> Chart:
     """Errors of the settled rates and of the curves over wall time, one line per model, with the
     uncertainty of the finest mesh and the Pareto front; and the surrogate's error of time
@@ -103,17 +96,13 @@ def picture(cost: Cost) -> Chart:
     def curve(point: Point) -> float | None:
         return point.curve_error and 100.0 * point.curve_error
 
+    integration = attrgetter("integration_error_deg_s")
     rates = "error of the settled rates (deg/s)"
     panels = []
     for title, error, label, shaded in (
         ("settled rates, against the finest mesh", settled, rates, band),
         ("curves of the rates, against the finest mesh", curve, "rate L2 (%)", None),
-        (
-            "settled rates, error of time integration",
-            attrgetter("integration_error_deg_s"),
-            rates,
-            None,
-        ),
+        ("settled rates, error of time integration", integration, rates, None),
     ):
         lines = [
             _cost_line(
@@ -127,11 +116,8 @@ def picture(cost: Cost) -> Chart:
         ]
         front = [_front(cost), *_recommended(cost)] if shaded else []
         shown = [line for line in front + lines if len(line.x)]
-        panels.append(
-            Panel(
-                title, "wall time of one run (s)", y_label=label, lines=shown, log=True, band=shaded
-            )
-        )
+        axes = "wall time of one run (s)", label
+        panels.append(Panel(title, *axes, shown, log=True, band=shaded))
     return Chart("cost", [panel for panel in panels if panel.lines], columns=2, height=420)
 
 
@@ -156,8 +142,7 @@ def _recommended(cost: Cost) -> list[Line]:
     if point is None or not point.error_deg_s:
         return []
     name = f"recommended: {point.model}, {point.numerics}"
-    place = [point.wall_s], [point.error_deg_s]
-    return [Line(*place, name=name, colour="#000000", dash="", marker="x", size=16.0)]
+    return [marks([point.wall_s], [point.error_deg_s], name, marker="x", size=16.0)]
 
 
 def _front(cost: Cost) -> Line:
@@ -167,20 +152,10 @@ def _front(cost: Cost) -> Line:
         for point, bound in choice.trusted(cost.points, cost.band_deg_s)
         if point.pareto
     )
-    walls, errors = [wall for wall, _ in front], [error for _, error in front]
-    return Line(
-        [
-            wall
-            for pair in zip(walls, [*walls[1:], max(p.wall_s for p in cost.points)])
-            for wall in pair
-        ],
-        [error for error in errors for _ in range(2)],
-        name="Pareto front",
-        colour="#000000",
-        width=3.0,
-        dash="-",
-        opacity=0.25,
-    )
+    walls = [wall for wall, _ in front for _ in range(2)]
+    errors = [error for _, error in front for _ in range(2)]
+    across = [*walls[1:], *[max(point.wall_s for point in cost.points)] * bool(walls)]
+    return Line(across, errors, "Pareto front", "#000000", 3.0, opacity=0.25)
 
 
 def _cost_line(
@@ -201,11 +176,10 @@ def _cost_line(
         named = max(points, key=lambda point: point.wall_s, default=None)
         labels = [model.split(" of ")[0] if point is named else "" for point in points]
     return Line(
-        [p.wall_s for p in points],
-        [error(p) for p in points],
-        name=model,
-        colour=colour,
-        width=1.6,
+        [point.wall_s for point in points],
+        [error(point) for point in points],
+        model,
+        colour,
         dash=dash,
         marker=marker,
         labels=tuple(labels),

@@ -38,13 +38,13 @@ class Match:
     """A surrogate, and the fastest mesh with an error that is not larger."""
 
     model: Annotated[str, Column("surrogate")]
-    numerics: Annotated[str, Column("numerics")]
+    numerics: Annotated[str, Column("numerics", detail=True)]
     error_deg_s: Annotated[float, _ERROR]
     wall_s: Annotated[float, Column("wall time", "ms", scale=1e3)]
     mesh: Annotated[str, Column("mesh")]
     mesh_error_deg_s: float | None
     mesh_is_reference: bool
-    mesh_wall_s: Annotated[float, _WALL]
+    mesh_wall_s: Annotated[float, Column("wall time", "s", detail=True)]
     ratio: Annotated[float, Column("ratio of wall times", form=",.0f")]
 
 

@@ -1,4 +1,4 @@
-"""Curves of other codes on the page and in the terminal."""
+"""Curves of other codes."""
 
 from collections.abc import Iterable, Sequence
 
@@ -27,28 +27,18 @@ _CAPTION = "Curves over the time after ignition. {reference} is the broad line."
 
 def draw(found: Compared) -> list[Part]:
     """Figure and tables."""
-    (figure,) = figures(found)
-    sources = [(name, item.source) for name, item in found.drawn.items()]
-    return [figure, *_tables(found), Fold("Files", [Table(("curve", "source"), sources)])]
-
-
-def terminal(found: Compared) -> list[Part]:
-    """The tables."""
     condition = f" Condition {found.condition} of {found.scene}." if found.condition else ""
-    return [
-        f"{counted(len(found.rows) - 1, 'curve')} against {found.reference}.{condition}",
-        *_tables(found),
-    ]
-
-
-def _tables(found: Compared) -> list[Part]:
     notes = [_NOTE.format(reference=found.reference)]
     starts = [row.settled_from_s for row in found.rows]
     if max(starts) - min(starts) > _APART:
         notes.append(_APART_NOTE.format(first=duration(min(starts), 4)))
+    sources = [(name, item.source) for name, item in found.drawn.items()]
     return [
+        f"{counted(len(found.rows) - 1, 'curve')} against {found.reference}.{condition}",
+        *figures(found),
         Table.of_records(found.rows, notes=tuple(notes)),
         Table.of_records(found.ratings, title="ISO 18571 of each channel:"),
+        Fold("Files", [Table(("curve", "source"), sources)]),
     ]
 
 

@@ -1,5 +1,4 @@
-"""Drop tests on the page and in the terminal: filtered rates, their change with uncertainty, and
-the tests among the simulated cases."""
+"""Drop tests: filtered rates, their change with uncertainty, and the tests among the simulated cases."""
 
 from collections.abc import Callable, Sequence
 
@@ -10,7 +9,7 @@ from tipoff.studies.droptest.judgement import MAGNITUDES
 from tipoff.studies.droptest.results import Cases, Compared, Droptest, Row
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.render.chart import Chart, Line, Panel
-from tipoff.studies.render.document import Figure, Fold, Notice, Part
+from tipoff.studies.render.document import Bullets, Figure, Fold, Notice, Part
 from tipoff.studies.render.palette import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Noted, Table, estimate, percent
 
@@ -39,31 +38,20 @@ _POWER = (
 
 
 def draw(found: Droptest) -> list[Part]:
-    """Everything in the section."""
+    """The tests, and their comparison with the simulated cases."""
+    request, cases = found.request, found.cases
+    condition = f" of condition {request.condition}" if request.condition else ""
     rates, cloud = figures(found)
     return [
+        f"{len(found.tests)} drop tests, {cases.settled:,} settled of {cases.asked:,} simulated "
+        f"cases{condition}; errors of {found.errors}, seed {found.varied.seed}.",
+        Bullets([population.model_line(found)]),
         *_warning(found),
         rates,
         _changes(found.tests),
         cloud,
         *table_of_comparison(found),
         _budgets(found.tests),
-        *_notes(found.tests),
-    ]
-
-
-def terminal(found: Droptest) -> list[Part]:
-    """Tables of the tests and of their comparison with the simulated cases."""
-    request, cases = found.request, found.cases
-    condition = f" of condition {request.condition}" if request.condition else ""
-    return [
-        f"{found.scene}: {len(found.tests)} drop tests, {cases.settled:,} settled of "
-        f"{cases.asked:,} simulated cases{condition}; errors of {found.errors}, seed "
-        f"{found.varied.seed}",
-        population.model_line(found),
-        *_warning(found),
-        _changes(found.tests),
-        *table_of_comparison(found),
         *_notes(found.tests),
     ]
 

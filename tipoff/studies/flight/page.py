@@ -1,5 +1,4 @@
-"""The flight on the page and in the terminal: figures of paths, axes, clearance and scatter, and
-tables of conditions and cases."""
+"""The flight: figures of paths, axes, clearance and scatter, and tables of conditions and cases."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -7,8 +6,8 @@ from collections.abc import Callable, Sequence
 from tipoff.studies.flight.results import Cases, Condition, Curves, Flight, Orbit
 from tipoff.studies.flight.summary import BY_NAME
 from tipoff.studies.populations import answers, population
-from tipoff.studies.render.chart import Chart, Line, Panel
-from tipoff.studies.render.document import Figure, Part
+from tipoff.studies.render.chart import Chart, Line, Panel, marks
+from tipoff.studies.render.document import Caption, Figure, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Noted, Table, estimate, percent
 from tipoff.workspace.words import counted
@@ -60,24 +59,18 @@ _CONE = "The cone angle is that between the payload's x axis and its angular mom
 
 
 def draw(found: Flight) -> list[Part]:
-    """The section."""
+    """The flight of each condition and of the cases."""
+    notes = [_BOXES] * (not found.flight.no_clearance) + remarks(
+        found.flight, found.cases.limit_open
+    )
     return [
-        _setup(found),
+        f"{_setup(found)} Agreement of the model: {found.agreement}.",
         *figures(found),
         table_of_conditions(found.conditions, [item.name for item in answers.ALL], [_EXITS], ".4g"),
-        *_flights(found),
+        table_of_conditions(found.conditions, _TARGET, notes),
+        table_of_conditions(found.conditions, _ROTATION, [_CONE]),
         _cases(found),
-    ]
-
-
-def terminal(found: Flight) -> list[Part]:
-    """The tables of conditions and cases, and the names of the data."""
-    return [
-        f"{found.scene}: {_setup(found)}",
-        f"Agreement of the model: {found.agreement}.",
-        *_flights(found),
-        _cases(found),
-        f"Store {found.cases.store}, data {found.data}.",
+        Caption(f"Store {found.cases.store}, data {found.data}."),
     ]
 
 
@@ -93,17 +86,6 @@ def table_of_conditions(
     ]
     columns = [Column(BY_NAME[name].label, BY_NAME[name].unit, form) for name in shown]
     return Table(["condition", *columns], rows, notes=tuple(notes), dense=True)
-
-
-def _flights(found: Flight) -> list[Part]:
-    """Tables of the flight of every condition."""
-    notes = [_BOXES] * (not found.flight.no_clearance) + remarks(
-        found.flight, found.cases.limit_open
-    )
-    return [
-        table_of_conditions(found.conditions, _TARGET, notes),
-        table_of_conditions(found.conditions, _ROTATION, [_CONE]),
-    ]
 
 
 def _cases(found: Flight) -> Table:
@@ -143,7 +125,7 @@ _Axis = Callable[[Curves], Sequence[float]]
 
 def _lines(curves: Sequence[Curves], x: _Axis, y: _Axis) -> list[Line]:
     return [
-        Line(x(curve), y(curve), name=curve.condition, colour=colour, width=1.8, dash=dash)
+        Line(x(curve), y(curve), curve.condition, colour, 1.8, dash)
         for curve, (colour, dash, _) in zip(curves, _LOOKS)
     ]
 
@@ -155,50 +137,22 @@ def _paths(curves: Sequence[Curves], flight: Orbit) -> Chart:
     def apart(index: int) -> _Axis:
         return lambda curve: [1e-3 * row[index] for row in curve.orbit_m]
 
-    target = Line(
-        [flight.range_m], [0.0], name="target", colour="#000000", width=1.0, dash="", marker="D"
-    )
-    platform = Line([0.0], [0.0], name="platform", colour="#000000", width=1.0, dash="", marker="s")
-    along = "along the launch axis (m)"
-    return Chart(
-        "flight-path",
-        [
-            Panel(
-                "to the target, sideways",
-                along,
-                y_label="y (m)",
-                lines=[*_lines(curves, path(0), path(1)), target],
-            ),
-            Panel(
-                "to the target, up",
-                along,
-                y_label="z (m)",
-                lines=[*_lines(curves, path(0), path(2)), target],
-            ),
-            Panel(
-                f"{flight.duration_s / 60.0:.3g} min, from the platform",
-                "along the orbit (km)",
-                y_label="radially outwards (km)",
-                lines=[*_lines(curves, apart(1), apart(0)), platform],
-            ),
-        ],
-        columns=3,
-        height=320,
-    )
+    target = marks([flight.range_m], [0.0], "target", marker="D")
+    platform = marks([0.0], [0.0], "platform", marker="s")
+    along, orbit = "along the launch axis (m)", ("along the orbit (km)", "radially outwards (km)")
+    sideways, up = (_lines(curves, path(0), path(place)) for place in (1, 2))
+    away = [*_lines(curves, apart(1), apart(0)), platform]
+    panels = [
+        Panel("to the target, sideways", along, "y (m)", [*sideways, target]),
+        Panel("to the target, up", along, "z (m)", [*up, target]),
+        Panel(f"{flight.duration_s / 60.0:.3g} min, from the platform", *orbit, away),
+    ]
+    return Chart("flight-path", panels, columns=3, height=320)
 
 
 def _axes(curves: Sequence[Curves]) -> Chart:
     passed = [
-        Line(
-            [y],
-            [z],
-            name=curve.condition,
-            colour=colour,
-            width=1.0,
-            dash="",
-            marker=marker,
-            legend=False,
-        )
+        marks([y], [z], curve.condition, colour, marker)
         for curve, (colour, _, marker) in zip(curves, _LOOKS)
         for y, z in [curve.axis_at_target_deg]
     ]
@@ -208,20 +162,12 @@ def _axes(curves: Sequence[Curves]) -> Chart:
         lambda curve: [z for _, z in curve.axis_deg],
     )
     angle = _lines(curves, lambda curve: curve.time_s, lambda curve: curve.pointing_deg)
-    return Chart(
-        "flight-axis",
-        [
-            Panel(
-                "cone of the x axis",
-                "towards y (deg)",
-                y_label="towards z (deg)",
-                lines=[*around, *passed],
-            ),
-            Panel("pointing error", "time after exit (s)", y_label="angle (deg)", lines=angle),
-        ],
-        columns=2,
-        height=360,
-    )
+    towards = "towards y (deg)", "towards z (deg)"
+    panels = [
+        Panel("cone of the x axis", *towards, [*around, *passed]),
+        Panel("pointing error", "time after exit (s)", "angle (deg)", angle),
+    ]
+    return Chart("flight-axis", panels, columns=2, height=360)
 
 
 def _clearance(curves: Sequence[Curves]) -> Chart:
@@ -231,21 +177,9 @@ def _clearance(curves: Sequence[Curves]) -> Chart:
         lambda curve: [1e3 * gap for gap in curve.clearance_m],
     )
     ends = (min(line.x[0] for line in lines), max(line.x[-1] for line in lines))
-    return Chart(
-        "flight-clearance",
-        [
-            Panel(
-                "",
-                "time after exit (ms)",
-                y_label="clearance (mm)",
-                lines=[
-                    *lines,
-                    Line(ends, (0.0, 0.0), name="touch", colour="#000000", width=1.0, dash=":"),
-                ],
-            )
-        ],
-        height=300,
-    )
+    lines.append(Line(ends, (0.0, 0.0), "touch", "#000000", 1.0, ":"))
+    panel = Panel("", "time after exit (ms)", "clearance (mm)", lines)
+    return Chart("flight-clearance", [panel], height=300)
 
 
 def _scatter(many: Cases) -> Chart:
@@ -255,40 +189,15 @@ def _scatter(many: Cases) -> Chart:
         *_exceeded(many, "miss_m", list(map(math.hypot, y, z)), "total", NAVY, "-"),
         *_exceeded(many, "tip_off_miss_m", errors, "ejection errors alone", AMBER, "--"),
     ]
-    marks = [
-        Line(
-            y, z, name="case", colour=NAVY, width=1.0, dash="", opacity=0.35, marker="o", size=3.0
-        ),
-        Line(
-            orbital_y[:1],
-            orbital_z[:1],
-            name="without errors",
-            colour=VERMILION,
-            width=1.0,
-            dash="",
-            marker="o",
-        ),
-        Line([0.0], [0.0], name="target", colour="#000000", width=1.0, dash="", marker="D"),
+    points = [
+        marks(y, z, "case", NAVY, opacity=0.35, size=3.0),
+        marks(orbital_y[:1], orbital_z[:1], "without errors", VERMILION),
+        marks([0.0], [0.0], "target", marker="D"),
     ]
-    return Chart(
-        "flight-miss",
-        [
-            Panel(
-                f"{len(y):,} of {many.settled:,} cases in the plane of the target",
-                "y (m)",
-                y_label="z (m)",
-                lines=marks,
-            ),
-            Panel(
-                "cases with a larger miss distance",
-                "miss distance (m)",
-                y_label="share (%)",
-                lines=shares,
-            ),
-        ],
-        columns=2,
-        height=360,
-    )
+    title = f"{len(y):,} of {many.settled:,} cases in the plane of the target"
+    larger = "cases with a larger miss distance", "miss distance (m)", "share (%)"
+    panels = [Panel(title, "y (m)", "z (m)", points), Panel(*larger, shares)]
+    return Chart("flight-miss", panels, columns=2, height=360)
 
 
 def _exceeded(
@@ -300,17 +209,14 @@ def _exceeded(
         Line(
             [row.low, row.high],
             [100.0 * (1.0 - row.share)] * 2,
-            name="bounds",
-            colour=VERMILION,
-            width=2.5,
-            dash="-",
+            *("bounds", VERMILION, 2.5),
             marker="D",
             size=5.0,
         )
         for row in many.quantiles.get(name, ())
         if row.low is not None and row.high is not None
     ]
-    return [Line(sorted(values), above, name=words, colour=colour, width=2.0, dash=dash), *bounds]
+    return [Line(sorted(values), above, words, colour, 2.0, dash), *bounds]
 
 
 def _setup(found: Flight) -> str:

@@ -1,5 +1,5 @@
-"""Certified tolerances on the page and for the terminal: a table beside the paper's advice, the
-share of cases above a limit by tolerance, and a map of two tolerances."""
+"""Certified tolerances: a table beside the paper's advice, the share of cases above a limit by
+tolerance, and a map of two tolerances."""
 
 from collections.abc import Callable, Sequence
 from operator import attrgetter
@@ -73,22 +73,20 @@ def figures(found: Limits) -> list[Figure]:
 
 
 def draw(found: Limits) -> list[Part]:
-    """The section."""
-    return [*terminal(found), *figures(found), *_beside(found), _ADVICE]
-
-
-def terminal(found: Limits) -> list[Part]:
-    """The certified tolerances, also for the terminal."""
+    """The certified tolerances with their check, figures, and every quantity there."""
     run = (
         f"limits: {', '.join(limit.words for limit in found.limits)}; to be kept together with probability "
         f"{found.probability:g} at {found.confidence:.0%} confidence; {found.cases:,} cases"
     )
     odd = [f"{row.words}: {line}" for row in found.rows for line in _odd(row)]
-    parts: list[Part] = [
+    return [
         Bullets([run, population.model_line(found), *_certified(found), *odd]),
         table_of(found),
+        *([] if found.certificate is None else [_strata(found.certificate)]),
+        *figures(found),
+        *_beside(found),
+        _ADVICE,
     ]
-    return parts if found.certificate is None else [*parts, _strata(found.certificate)]
 
 
 def table_of(found: Limits) -> Table:

@@ -1,38 +1,15 @@
-"""The mesh on the page."""
+"""The mesh of the rails."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
-from tipoff.studies.mesh.stage import STAGE, Deck, Mesh
+from tipoff.studies.mesh.stage import Deck, Mesh
 from tipoff.studies.render.document import Caption, Notice, Part
 from tipoff.studies.render.table import Column, Table
 
-if TYPE_CHECKING:
-    from tipoff.studies.report.page import Page
 
-
-def draw(page: "Page") -> list[Part]:
-    """The figures of the mesh, and its surfaces."""
-
-    def body(found: Mesh) -> list[Part]:
-        return [
-            Caption(
-                f"{found.elements:,} {found.kind}, {found.nodes:,} nodes, elements of about "
-                f"{1e3 * found.element_size_m:g} mm. Edges: {1e3 * found.shortest_edge_m:.3g} to "
-                f"{1e3 * found.longest_edge_m:.3g} mm. Smallest scaled Jacobian: "
-                f"{found.smallest_scaled_jacobian:.3f} (1 for a brick and for a regular "
-                f"tetrahedron). ParaView shows {found.mesh}."
-            ),
-            *terminal(found),
-            *map(Notice, found.warnings),
-        ]
-
-    return page.shown(STAGE, body, "mesh")
-
-
-def terminal(found: Mesh) -> list[Part]:
-    """The named surfaces: their facets, their area, and for a solid the area of its own faces; then the
-    extent of the rails."""
+def draw(found: Mesh) -> list[Part]:
+    """The mesh; its named surfaces: their facets, their area, and for a solid the area of its own
+    faces; then the extent of the rails."""
     surfaces = found.surfaces
     columns: list[tuple[Column | str, Callable]] = [
         ("surface", lambda item: item[0].replace("_", " ")),
@@ -47,9 +24,17 @@ def terminal(found: Mesh) -> list[Part]:
         for axis, low, high in zip("xyz", found.low_m, found.high_m)
     )
     return [
+        Caption(
+            f"{found.elements:,} {found.kind}, {found.nodes:,} nodes, elements of about "
+            f"{1e3 * found.element_size_m:g} mm. Edges: {1e3 * found.shortest_edge_m:.3g} to "
+            f"{1e3 * found.longest_edge_m:.3g} mm. Smallest scaled Jacobian: "
+            f"{found.smallest_scaled_jacobian:.3f} (1 for a brick and for a regular "
+            f"tetrahedron). ParaView shows {found.mesh}."
+        ),
         Table.of(surfaces.items(), columns),
         Caption(f"Rails in scene axes: {spans}."),
         *([Caption(_deck(found.deck))] if found.deck else []),
+        *map(Notice, found.warnings),
     ]
 
 

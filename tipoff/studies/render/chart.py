@@ -27,7 +27,7 @@ _MARKERS = 20000  # largest number in a line of an SVG; longer lines become a bi
 @dataclass(frozen=True)
 class Line:
     """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^",
-    "v", "D", "x" or ""; ``labels`` are texts at the points, ``size`` that of a marker (px)."""
+    "v", "D", "x", "P" or ""; ``labels`` are texts at the points, ``size`` that of a marker (px)."""
 
     x: Sequence[float] | np.ndarray
     y: Sequence[float] | np.ndarray
@@ -41,6 +41,18 @@ class Line:
     labels: tuple[str, ...] = ()
     beside: str = "top center"  # where a label stands, of ``_OFFSETS``
     size: float = 9.0
+
+
+def marks(
+    x: Sequence[float] | np.ndarray,
+    y: Sequence[float] | np.ndarray,
+    name: str,
+    colour: str = "#000000",
+    marker: str = "o",
+    **others: Any,
+) -> Line:
+    """Markers without a line between them; ``others`` are further fields of a ``Line``."""
+    return Line(x, y, name, colour, dash="", marker=marker, **others)
 
 
 @dataclass(frozen=True)

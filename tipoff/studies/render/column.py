@@ -16,7 +16,7 @@ class Column:
 
     ``unit`` is in brackets after the ``title``. A number is multiplied by ``scale`` and shown in
     ``form``, a format of Python, without digits below the smallest step of its unit. An integer has
-    all digits, and ``nothing`` stands for None.
+    all digits, and ``nothing`` stands for None. The terminal leaves out a column of ``detail``.
     """
 
     title: str
@@ -24,6 +24,7 @@ class Column:
     form: str = ".3g"
     scale: float = 1.0
     nothing: str = NOTHING
+    detail: bool = False
 
     @property
     def head(self) -> str:

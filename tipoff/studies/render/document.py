@@ -233,6 +233,8 @@ def _terminal(part: Part) -> str:
             return tables.terminal(part)
         case Bullets():
             return "\n".join(part.lines)
+        case Heading():
+            return f"\n{part.text}"
         case _:
             return _text(part)
 

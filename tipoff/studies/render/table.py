@@ -4,7 +4,8 @@ import io
 import re
 import shutil
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import compress
 from numbers import Integral, Real
 from operator import attrgetter
 from typing import Any
@@ -26,8 +27,8 @@ class Noted:
 
 
 Cells = Sequence[tuple[Column | str, str | Callable[[Any], Any]]]
-"""Columns with their cells: the key of the cell in a record, or a function that makes the cell "
-"from the record."""
+"""Columns with their cells: the key of the cell in a record, or a function that makes the cell
+from the record."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +36,8 @@ class Table:
     """``columns`` by title or as records, and ``rows`` of cells.
 
     A cell is a number, a sequence of numbers, text, yes or no, None, ``Noted`` or ``Measured``.
-    ``title`` is the paragraph above the table, ``notes`` are those below it; ``name`` is the id on
-    the page.
+    ``title`` is the paragraph above the table, ``notes`` are those below it, ``details`` those on
+    columns of detail; ``name`` is the id on the page.
     ``kinds`` holds for each row "good", "bad", "doubt", "best" or "". Words between backticks are
     code.
     """
@@ -48,6 +49,7 @@ class Table:
     name: str = ""
     kinds: Sequence[str] = ()
     dense: bool = False
+    details: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, records: Iterable[Any], columns: Cells, **others: Any) -> "Table":
@@ -75,6 +77,12 @@ class Table:
         heads = [declared[item] if isinstance(item, str) else item[0] for item in chosen]
         cells = [attrgetter(item) if isinstance(item, str) else item[1] for item in chosen]
         return cls(heads, [tuple(cell(record) for cell in cells) for record in records], **others)
+
+    def brief(self) -> "Table":
+        """The table without its columns of detail and the notes on them, as the terminal shows it."""
+        shown = [not (isinstance(item, Column) and item.detail) for item in self.columns]
+        rows = [tuple(compress(row, shown)) for row in self.rows]
+        return replace(self, columns=list(compress(self.columns, shown)), rows=rows, details=())
 
     @property
     def heads(self) -> list[str]:
@@ -135,16 +143,19 @@ def markdown(table: Table) -> str:
     lines = [_line(table.heads), "|---" * len(table.columns) + "|"]
     for row, kind in zip(_texts(table), _kinds(table)):
         lines.append(_line([f"**{row[0]}**", *row[1:]] if kind == "best" else row))
-    return "\n\n".join([*([table.title] if table.title else []), "\n".join(lines), *table.notes])
+    return "\n\n".join(
+        [*([table.title] if table.title else []), "\n".join(lines), *table.notes, *table.details]
+    )
 
 
 def terminal(table: Table) -> str:
-    """The table with its title and notes as lines of text, as wide as the terminal at most."""
+    """The table in brief with its title and notes as lines of text, as wide as the terminal at most."""
     from rich import box
     from rich.console import Console
     from rich.table import Table as Grid
     from rich.text import Text
 
+    table = table.brief()
     grid = Grid(box=box.SIMPLE_HEAD, pad_edge=False)
     rows = _texts(table)
     columns = list(zip(table.heads, *rows))
@@ -212,7 +223,7 @@ _TEMPLATE = _ENVIRONMENT.from_string(
 </tr>
 {% endfor %}
 </tbody></table></div>
-{% for note in table.notes %}<p class="caption">{{ note | inline }}</p>{% endfor %}
+{% for note in table.notes + table.details %}<p class="caption">{{ note | inline }}</p>{% endfor %}
 """
 )
 

@@ -45,10 +45,8 @@ def thrust_curve(scene: Scene) -> Chart:
     """Thrust until the expected end of the run."""
     time = np.linspace(0.0, scene.expected_end, 600)
     force = thrust_law.sample(ends.over_time(launch.of(scene)), time)
-    line = Line(1e3 * time, 1e-3 * force, name="thrust", colour=NAVY, width=2.0, legend=False)
-    return Chart(
-        "thrust", [Panel("", _MILLISECONDS, y_label="thrust (kN)", lines=[line])], height=260
-    )
+    line = Line(1e3 * time, 1e-3 * force, "thrust", width=2.0, legend=False)
+    return Chart("thrust", [Panel("", _MILLISECONDS, "thrust (kN)", [line])], height=260)
 
 
 def figure6(runs: Runs, conditions: list[str]) -> Chart:
@@ -73,14 +71,10 @@ def figure6(runs: Runs, conditions: list[str]) -> Chart:
             for i, colour in enumerate(AXIS_COLOURS.values())
         ]
         other = _differences(runs, name, lambda run: np.degrees(run.rate), AXIS_COLOURS)
+        title, axes = f"{name}: difference of the rates", (_MILLISECONDS, "difference (deg/s)")
         panels += [
-            Panel(f"({letter}) {name}: rates", _MILLISECONDS, y_label="rate (deg/s)", lines=lines),
-            Panel(
-                f"{name}: difference of the rates",
-                _MILLISECONDS,
-                y_label="difference (deg/s)",
-                lines=other,
-            ),
+            Panel(f"({letter}) {name}: rates", _MILLISECONDS, "rate (deg/s)", lines),
+            Panel(title, *axes, other),
         ]
     return Chart("figure6", panels, columns=2, height=290)
 
@@ -127,16 +121,7 @@ def _differences(
 
 def _line(time, values, colour: str, kind: str, legend: bool = True) -> Line:
     model, width, dash, opacity = _STYLES[kind]
-    return Line(
-        1e3 * time,
-        values,
-        name=model,
-        colour=colour,
-        width=width,
-        dash=dash,
-        opacity=opacity,
-        legend=legend,
-    )
+    return Line(1e3 * time, values, model, colour, width, dash, opacity, legend=legend)
 
 
 def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:
@@ -157,18 +142,13 @@ def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:
             for pad in np.flatnonzero(force.max(axis=0) > 1.0)
         }
     )
-    panels = [
-        Panel(
-            _pad_title(scene, pad),
-            _MILLISECONDS,
-            y_label="force (N)",
-            lines=[
-                _line(time, force[:, pad], _COLOURS[kind], kind)
-                for kind, (time, force) in forces.items()
-            ],
-        )
-        for pad in loaded
-    ]
+    panels = []
+    for pad in loaded:
+        lines = [
+            _line(time, force[:, pad], _COLOURS[kind], kind)
+            for kind, (time, force) in forces.items()
+        ]
+        panels.append(Panel(_pad_title(scene, pad), _MILLISECONDS, "force (N)", lines))
     return Chart("contact-forces", panels, columns=2 if len(panels) > 1 else 1, height=250)
 
 
@@ -198,32 +178,14 @@ def energy_ledgers(runs: Runs, condition: str) -> Chart:
             ("transverse", run.transverse_energy, "mJ", 1e3),
         ):
             largest = np.abs(entries).max()
+            time = 1e3 * run.time
             lines = [
-                Line(
-                    1e3 * run.time,
-                    factor * entries[:, i],
-                    name=name.replace("_", " "),
-                    colour=_LEDGER_COLOURS[name],
-                )
+                Line(time, factor * entries[:, i], name.replace("_", " "), _LEDGER_COLOURS[name])
                 for i, name in enumerate(ledger.ENTRIES)
                 if np.abs(entries[:, i]).max() > 1e-6 * largest
             ]
-            lines.append(
-                Line(
-                    1e3 * run.time,
-                    factor * ledger.residual(entries),
-                    name="residual",
-                    colour="#000000",
-                    width=1.6,
-                    dash="--",
-                )
-            )
-            panels.append(
-                Panel(
-                    f"{title} ledger, {_STYLES[kind][0]}",
-                    _MILLISECONDS,
-                    y_label=f"energy ({unit})",
-                    lines=lines,
-                )
-            )
+            rest = factor * ledger.residual(entries)
+            lines.append(Line(time, rest, "residual", "#000000", dash="--"))
+            words = f"{title} ledger, {_STYLES[kind][0]}"
+            panels.append(Panel(words, _MILLISECONDS, f"energy ({unit})", lines))
     return Chart("energy-ledgers", panels, columns=2, height=290)

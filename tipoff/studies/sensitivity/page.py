@@ -1,5 +1,5 @@
-"""The sensitivity of the result, on the page and for the terminal: contact constants beside the
-paper's Table 2, and Sobol' indices of every quantity."""
+"""The sensitivity of the result: contact constants beside the paper's Table 2, and Sobol' indices of
+every quantity."""
 
 import math
 from dataclasses import replace
@@ -113,30 +113,17 @@ def figures(found: Sensitivity) -> list[Figure]:
 
 def draw(found: Sensitivity) -> list[Part]:
     """The section: tables of contact constants, then indices."""
-    tables = [
-        table
-        for item in found.tables
-        for table in (table_of_largest(item, found.paper), _beside_paper(item, found.paper))
-    ]
+    changes = [_beside_paper(item, found.paper) for item in found.tables]
     return [
         Bullets([population.model_line(found)]),
-        *([Heading("One contact constant at a time")] if tables else []),
-        *tables,
+        *([Heading("One contact constant at a time")] if found.tables else []),
+        *(table_of_largest(item, found.paper) for item in found.tables),
+        *([Fold("Each change beside the paper's Table 2", changes)] if changes else []),
         Heading("All inputs together"),
         _used(found.sobol),
         table_of_indices(found.sobol),
         *figures(found),
         _inputs(found.sobol),
-    ]
-
-
-def terminal(found: Sensitivity) -> list[Part]:
-    """The largest changes and the total indices, for the terminal."""
-    return [
-        Bullets([population.model_line(found)]),
-        *(table_of_largest(item, found.paper) for item in found.tables),
-        _used(found.sobol),
-        table_of_indices(found.sobol),
     ]
 
 

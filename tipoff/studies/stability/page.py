@@ -1,9 +1,7 @@
-"""Hard cases on the page."""
-
-from dataclasses import replace
+"""Hard cases."""
 
 from tipoff.studies.render.document import Part
-from tipoff.studies.render.table import Noted, Table
+from tipoff.studies.render.table import Column, Table
 from tipoff.studies.stability.stage import HardCases
 from tipoff.studies.stability.verdict import Verdict
 
@@ -18,20 +16,24 @@ _NOTE = (
 
 def draw(found: HardCases) -> list[Part]:
     """Hard cases, held or not, each with a simpler method that fails."""
-    steps = ("largest_step_s", "critical_step_s", "energy_drift")
-    case = ("case", lambda each: Noted(each.name, _measure(each)))
-    columns = (case, *_FIGURES, *steps, "control", "control_figure", _VERDICT)
-    kinds = ["good" if each.held and each.control_failed else "bad" for each in found.cases]
-    title = "For each case a simpler method must fail. Otherwise the case proves nothing."
-    table = Table.of_records(found.cases, *columns, notes=(_NOTE,), title=title, kinds=kinds)
-    return [replace(table, dense=True)]
-
-
-def terminal(found: HardCases) -> list[Part]:
-    """Each hard case with its verdict."""
-    good = sum(each.held and each.control_failed for each in found.cases)
-    title = f"{good} of {len(found.cases)} hard cases are held where a simpler method fails:"
-    return [Table.of_records(found.cases, "name", *_FIGURES, "control", _VERDICT, title=title)]
+    good = [each.held and each.control_failed for each in found.cases]
+    title = (
+        f"{sum(good)} of {len(good)} hard cases are held where a simpler method fails. A case where it "
+        "does not fail proves nothing."
+    )
+    columns = (
+        "name",
+        (Column("measure", detail=True), _measure),
+        *("fidelity", "figure", "limit", "largest_step_s", "critical_step_s", "energy_drift"),
+        *("control", "control_figure"),
+        ("verdict", _verdict),
+    )
+    kinds = ["good" if each else "bad" for each in good]
+    return [
+        Table.of_records(
+            found.cases, *columns, details=(_NOTE,), title=title, kinds=kinds, dense=True
+        )
+    ]
 
 
 def _measure(case: Verdict) -> str:
@@ -46,7 +48,3 @@ def _verdict(case: Verdict) -> str:
         if case.control_failed
         else "held, but the simpler method holds too"
     )
-
-
-_FIGURES = ("fidelity", "figure", "limit")
-_VERDICT = ("verdict", _verdict)

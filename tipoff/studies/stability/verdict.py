@@ -2,12 +2,14 @@
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, NamedTuple
 
 from tipoff.results.trajectory import Trajectory
 from tipoff.studies.render.column import Column
 
 _INFINITE = "infinite"
+_step = partial(Column, unit="µs", scale=1e6, detail=True)
 
 
 class Stability(NamedTuple):
@@ -34,12 +36,12 @@ class Verdict:
     limit: Annotated[float, Column("limit")]
     held: bool
     control: Annotated[str, Column("simpler method")]
-    control_figure: Annotated[float | None, Column("its figure", nothing=_INFINITE)]
+    control_figure: Annotated[float | None, Column("its figure", nothing=_INFINITE, detail=True)]
     control_failed: bool
     note: str = ""
-    largest_step_s: Annotated[float | None, Column("largest step", "µs", scale=1e6)] = None
-    critical_step_s: Annotated[float | None, Column("critical step", "µs", scale=1e6)] = None
-    energy_drift: Annotated[float | None, Column("energy drift", form=".2g")] = None
+    largest_step_s: Annotated[float | None, _step("largest step")] = None
+    critical_step_s: Annotated[float | None, _step("critical step")] = None
+    energy_drift: Annotated[float | None, Column("energy drift", form=".2g", detail=True)] = None
 
 
 def stability(run: Trajectory, stiffness: float = 0.0, mass: float = 1.0) -> Stability:

@@ -1,5 +1,4 @@
-"""How large an error may be, on the page and for the terminal: verdicts beside the paper's, the
-reason for a plateau, and the figures."""
+"""How large an error may be: verdicts beside the paper's, the reason for a plateau, and the figures."""
 
 from collections.abc import Iterator, Sequence
 
@@ -51,11 +50,6 @@ def draw(found: Sweeps) -> list[Part]:
         details = Fold("Slopes, and the largest values by size", _details(launch))
         parts += [*_launched(launch), details]
     return [*parts, Caption(_METHOD), *_why(found.launches), *figures(found)]
-
-
-def terminal(found: Sweeps) -> list[Part]:
-    """Runs, verdicts and the largest values, for the terminal."""
-    return [*_runs(found), *(part for launch in found.launches for part in _launched(launch))]
 
 
 def _runs(found: Sweeps) -> list[Part]:
