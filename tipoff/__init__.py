@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         load,
         parse,
         run,
+        scene_from_rocketpy,
     )
 
 __all__ = [
@@ -45,6 +46,7 @@ __all__ = [
     "load",
     "parse",
     "run",
+    "scene_from_rocketpy",
 ]
 
 

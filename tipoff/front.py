@@ -71,6 +71,27 @@ def load(name_or_path: str | Path) -> Scene:
     return scene
 
 
+def scene_from_rocketpy(flight: Any) -> Scene:
+    """The scene of a flight of RocketPy: its rocket on its rail, to compute the tip-off.
+
+    Mass, mass centre and inertia at ignition, buttons, rail, inclination, thrust, its line and that of the
+    mass centre are those of the flight; ``provenance`` names the field of each. The profile of the
+    rail, its clamps, the material of the buttons and friction are assumed: ``replace`` changes them.
+
+    Args:
+        flight: an object of RocketPy's class ``Flight``, that begins on its rail.
+
+    Returns:
+        Scene: the scene; ``Trajectory.export`` hands its state at exit back to RocketPy.
+
+    Raises:
+        SceneError: every value that the flight lacks.
+    """
+    from tipoff.scenes import from_rocketpy
+
+    return from_rocketpy.scene_of(flight)
+
+
 def run(
     scene: Scene | str | Path,
     model: str = COMPLIANT,

@@ -7,8 +7,9 @@ advanced to its middle. The error is a t^2 / 2 with the acceleration a and t = 0
 1,000 m/s2.
 
 ``initial_solution`` is in the axes of RocketPy, class ``Flight`` (version 1.12): inertial x East, y
-North, z up above sea level; body z to the nose, and x and y along our body axes y and z; Euler
-parameters from body axes to inertial ones, scalar first; body rates. The place is that of the mass
+North, z up above sea level; body z to the nose, and x and y along our body axes y and z, or as
+``[hand_over]`` places the buttons; Euler parameters from body axes to inertial ones, scalar first;
+body rates. The place is that of the mass
 centre without propellant.
 """
 
@@ -43,8 +44,6 @@ _AXES = (
     "x East, y North, z up above sea level; body z to the nose; e0..e3 scalar first, body to "
     "inertial axes; body rates"
 )
-# our body axes of RocketPy's body axes, as columns
-_BODY = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
 class State(NamedTuple):
@@ -92,10 +91,10 @@ def initial_solution(state: State, rail: Standing) -> np.ndarray:
     arm = np.array([rail.dry_mass_centre, 0.0, 0.0])
     position = state.position + body.apply(arm)
     velocity = state.velocity + body.apply(np.cross(state.rate, arm))
-    turned = Rotation.from_matrix(rail.axes) * body * Rotation.from_matrix(_BODY)
+    turned = Rotation.from_matrix(rail.axes) * body * Rotation.from_matrix(rail.body)
     time = np.asarray(state.time)[..., None]
     place = position @ rail.axes.T + [0.0, 0.0, rail.elevation]
-    parts = (time, place, velocity @ rail.axes.T, _scalar_first(turned), state.rate @ _BODY)
+    parts = (time, place, velocity @ rail.axes.T, _scalar_first(turned), state.rate @ rail.body)
     return np.concatenate(parts, axis=-1)
 
 

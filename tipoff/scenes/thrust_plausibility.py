@@ -78,7 +78,11 @@ def _meant(scene, speed: float, strongest: float, weaker: bool) -> str:
     thrust = scene.thrust
     is_rocket = weaker and thrust.reaction == "platform" and strongest <= HARDEST_ROCKET
     rocket = 'a rocket, which burns on after the exit, has thrust.reaction = "exhaust"'
-    if is_rocket and thrust.kind == "measured" and thrust.file.lower().endswith((".eng", ".rse")):
+    if (
+        is_rocket
+        and thrust.kind == "measured"
+        and (thrust.file or "").lower().endswith((".eng", ".rse"))
+    ):
         return f"; {rocket}"
     units = [
         (factor, name)
@@ -100,7 +104,9 @@ def _of_record(table) -> list[str]:
     if peak == 0.0:
         return []
     before, after = table.levels()
-    return _of_offset(table, before, after) + _of_ends(curve, peak, before, after)
+    key = "thrust.points" if table.file is None else "thrust.file"
+    ends = _of_ends(curve, peak, before, after)
+    return _of_offset(table, before, after) + [f"{key}, {words}" for words in ends]
 
 
 def _of_offset(table, before: Level | None, after: Level | None) -> list[str]:
@@ -141,13 +147,13 @@ def _of_ends(
     if before is None and curve.time[0] > 0.0 and abs(first) > _CUT * peak:
         added = 0.5 * first * float(curve.time[0])
         found.append(
-            f"thrust.file, first point: {first:.4g} N at {curve.time[0]:.4g} s, {100.0 * first / peak:.3g} "
+            f"first point: {first:.4g} N at {curve.time[0]:.4g} s, {100.0 * first / peak:.3g} "
             "% of the peak; plausible: 0 N at ignition. The thrust is zero before; a straight line "
             f"from 0 N at 0 s adds {added:.4g} N s"
         )
     if after is None and abs(last) > _CUT * peak:
         found.append(
-            f"thrust.file, last point: {last:.4g} N at {curve.time[-1]:.4g} s, {100.0 * last / peak:.3g} "
+            f"last point: {last:.4g} N at {curve.time[-1]:.4g} s, {100.0 * last / peak:.3g} "
             "% of the peak; plausible: 0 N after burn-out. The thrust is zero from there on; if it is "
             "meant so, a second row with this time and 0 N says so"
         )

@@ -16,7 +16,12 @@ def require(before: Tables, after: Tables, source: str) -> None:
     content in ``after``, which was read later."""
     changed = []
     (old, rail), (new, later) = before, after
-    if isinstance(old, MeasuredTable) and isinstance(new, MeasuredTable) and old.file == new.file:
+    if (
+        isinstance(old, MeasuredTable)
+        and isinstance(new, MeasuredTable)
+        and new.file is not None
+        and old.file == new.file
+    ):
         pairs = zip(old.curve(), new.curve())
         if not all(np.array_equal(first, second) for first, second in pairs):
             changed.append(("thrust.file", new.file))

@@ -4,7 +4,7 @@ import pytest
 
 from tests.scenes.support import refused, small, write
 from tipoff.formats import csv_file
-from tipoff.scenes import parse
+from tipoff.scenes import SceneError, load, parse
 
 pytestmark = pytest.mark.case("X19")
 
@@ -63,3 +63,45 @@ def test_the_rows_of_a_curve_are_read_once(tmp_path, monkeypatch):
     write(tmp_path, "curve.csv", "time_s,force_N\n0,0\n0.004,30250\n0.009,0\n")
     parse(small(thrust={"kind": "measured", "file": str(path)}))
     assert len(read) == 2
+
+
+POINTS = {"kind": "measured", "points": [[0, 0], [8, 1.2], [12, 5.9], [12, 3.1], [24, 0]]}
+POINTS |= {"time_unit": "ms", "thrust_unit": "kN"}
+
+
+def test_points_in_the_scene_are_the_curve_of_a_file(tmp_path):
+    """The same scene, whichever way, also restored from its results. Other points are another scene."""
+    file = tmp_path / "thrust.csv"
+    file.write_text("time_s,force_N\n0,0\n0.008,1200\n0.012,5900\n0.012,3100\n0.024,0\n")
+    tiny = load("tiny")
+    scene = tiny.replace({"thrust": POINTS})
+    assert scene.hash == tiny.replace({"thrust": {"kind": "measured", "file": str(file)}}).hash
+    assert parse(scene.resolved(), bare_numbers_are_si=True).hash == scene.hash
+    other = scene.replace({"thrust.points": [[0, 0], [10, 1], [20, 0]]})
+    assert other.thrust.requested() == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(
+    "changes, words",
+    [
+        ({"time_unit": None}, "thrust.points.*thrust.time_unit"),
+        ({"time_unit": "kN", "thrust_unit": "ms"}, "thrust.points.*quantity in s"),
+        ({"points": [[0, 0], [2, 1], [1, 1]]}, "thrust.points.*increasing order \\(point 3\\)"),
+        ({"points": [[0, 0]]}, "thrust.points.*two different times"),
+        ({"points": [[0, float("nan")], [1, 1]]}, "thrust.points.*finite"),
+        ({"points": None}, "thrust.file.*a file, or points"),
+        ({"motor": "M1670"}, "thrust.points.*without thrust.motor"),
+        ({"ignition": "1 s"}, "thrust.points.*around thrust.ignition"),
+    ],
+)
+def test_points_that_are_no_curve_are_refused(changes, words):
+    table = {key: value for key, value in (POINTS | changes).items() if value is not None}
+    with pytest.raises(SceneError, match=words):
+        load("tiny").replace({"thrust": table})
+
+
+def test_points_beside_a_file_are_refused(tmp_path):
+    file = tmp_path / "thrust.csv"
+    file.write_text("0,0\n1,1\n")
+    with pytest.raises(SceneError, match="thrust.points.*one or the other"):
+        load("tiny").replace({"thrust": POINTS | {"file": str(file)}})

@@ -70,5 +70,5 @@ def test_an_effect_is_named_in_its_file_the_registry_and_the_scene():
     named = {path.name for path in paths if re.search(r"\bgravity\b", path.read_text())}
     # which way is up on the ground, whether a payload has a weight to rest with, and the name of the
     # entry of all body forces
-    others = {"hand_over.py", "body.py", "settled.py", "ledger.py"}
+    others = {"hand_over.py", "body.py", "settled.py", "ledger.py", "from_rocketpy.py"}
     assert named == {"gravity.py", "registry.py", "scene.py"} | others

@@ -35,7 +35,8 @@ ANYTHING = Choice()
 
 class Record(NamedTuple):
     """time (n,) s and force (n,) N; what was read in words, empty for the layout of tipoff; the line of
-    each point in its file; what is wrong with the numbers; whether it is a motor, which cannot pull."""
+    each point in its file; what is wrong with the numbers; whether it is a motor, which cannot pull; what
+    ``lines`` counts."""
 
     time: np.ndarray
     force: np.ndarray
@@ -43,12 +44,14 @@ class Record(NamedTuple):
     lines: tuple[int, ...]
     faults: tuple[str, ...] = ()
     is_motor: bool = False
+    counted: str = "line"
 
     def where(self, wrong: np.ndarray) -> str:
         """The lines of the ``wrong`` points (n,)."""
         lines = [str(line) for line, is_wrong in zip(self.lines, wrong, strict=True) if is_wrong]
         more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
-        return f"line{'s' if len(lines) > 1 else ''} {', '.join(lines[:_SHOWN])}{more}"
+        plural = "s" if len(lines) > 1 else ""
+        return f"{self.counted}{plural} {', '.join(lines[:_SHOWN])}{more}"
 
 
 def chosen(names: Sequence[tuple[str, str]], wanted: str | None) -> int:

@@ -12,10 +12,11 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+from pydantic import Field
 
 from tipoff.faults import Fault, SceneError
 from tipoff.scenes.parts import body
-from tipoff.scenes.table import Table
+from tipoff.scenes.table import Table, is_absent
 from tipoff.scenes.units import Angle, Inclination, Length
 
 _SAME = np.radians(0.1)  # largest difference between an inclination and that of gravity
@@ -34,6 +35,9 @@ class HandOverTable(Table):
     #: Distance of the mass centre without propellant ahead of the mass centre; 0 (assumed) where
     #: absent.
     dry_mass_centre: Length | None = None
+    #: Place of the rail buttons about the rocket, as RocketPy's angular_position; 180 deg where
+    #: absent: RocketPy's body axes x and y are then y and z.
+    angular_position: Angle | None = Field(None, exclude_if=is_absent)
 
 
 class Standing(NamedTuple):
@@ -44,6 +48,7 @@ class Standing(NamedTuple):
     heading: float  # rad
     elevation: float  # m
     dry_mass_centre: float  # m, ahead of the mass centre
+    body: np.ndarray  # (3,3) components in our body axes of RocketPy's ones, as columns
     assumed: tuple[str, ...]  # values that the scene does not state, in words
 
 
@@ -88,9 +93,19 @@ def standing(scene: Mapping[str, Any]) -> Standing:
     return Standing(
         axes=_axes(inclination, values["heading"], across),
         inclination=float(inclination),
+        body=body_axes(table.get("angular_position")),
         assumed=tuple(assumed),
         **values,
     )
+
+
+def body_axes(angular_position: float | None) -> np.ndarray:
+    """(3,3) components in our body axes of RocketPy's ones, as columns, for buttons at this angle (rad),
+    180 deg without one: at ignition RocketPy turns the rocket so that (sin, cos, 0) points to the rail."""
+    cosine, sine = -1.0, 0.0
+    if angular_position is not None:
+        cosine, sine = float(np.cos(angular_position)), float(np.sin(angular_position))
+    return np.array([[0.0, 0.0, 1.0], [-cosine, sine, 0.0], [-sine, -cosine, 0.0]])
 
 
 def _axes(inclination: float, heading: float, across: np.ndarray) -> np.ndarray:

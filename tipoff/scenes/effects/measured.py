@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -11,6 +11,7 @@ import numpy as np
 import scipy  # its submodules load at their first use
 
 from tipoff.files import read_input
+from tipoff.formats.instrument_table import scale
 from tipoff.formats.thrusts.reader import read_thrust
 from tipoff.formats.thrusts.record import ANYTHING, SECTION, Choice, Record
 
@@ -64,12 +65,32 @@ def read_record(
     return MeasuredCurve(*(values.copy() for values in curve)), words
 
 
+def curve_of_points(
+    points: Sequence[tuple[float, float]], choice: Choice, may_begin_early: bool = False
+) -> MeasuredCurve:
+    """The thrust over time of n >= 2 ``points`` (time, force), in the units of ``choice``. Raises
+    ValueError with what is wrong, as ``read_record`` does."""
+    choice.require_only(("time_unit", "thrust_unit"), "points")
+    units = {"time_unit": choice.time_unit, "thrust_unit": choice.thrust_unit}
+    if missing := [f"thrust.{name}" for name, unit in units.items() if unit is None]:
+        raise ValueError(f"points with {' and '.join(missing)}")
+    factors = [scale(unit or "", si) for unit, si in zip(units.values(), ("s", "N"))]
+    time, force = (np.array(points, dtype=float).reshape(-1, 2) * factors).T.copy()
+    found = Record(time, force, "", tuple(range(1, len(time) + 1)), counted="point")
+    return _checked(found, may_begin_early)
+
+
 # Each condition and each variation of a scene reads its curve. Equal bytes give an equal curve.
 @lru_cache(maxsize=4)
 def _parsed(
     path: str, data: bytes, choice: Choice, may_begin_early: bool
 ) -> tuple[MeasuredCurve, str]:
     found = read_thrust(path, data, choice)
+    return _checked(found, may_begin_early), found.words
+
+
+def _checked(found: Record, may_begin_early: bool) -> MeasuredCurve:
+    """The curve of a record. Raises ValueError with everything that is wrong."""
     time, wrong = found.time, list(found.faults)
     for is_wrong, expected in _expected(found, may_begin_early):
         if is_wrong.any():
@@ -78,7 +99,7 @@ def _parsed(
         wrong.append("at least two different times")
     if wrong:
         raise ValueError(f"a curve with {', '.join(wrong)}; {SECTION}")
-    return MeasuredCurve(time, found.force), found.words
+    return MeasuredCurve(time, found.force)
 
 
 def _expected(found: Record, may_begin_early: bool) -> Iterator[tuple[np.ndarray, str]]:

@@ -1,8 +1,8 @@
-"""``[thrust] kind = "measured"``: a thrust over time from a file, used point by point or through its
-least-squares Gaussian fit."""
+"""``[thrust] kind = "measured"``: a thrust over time from a file or from points, used point by point or
+through its least-squares Gaussian fit."""
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
@@ -15,6 +15,7 @@ from tipoff.scenes.effects.measured import (
     FIT_IMPULSE,
     GaussianFit,
     MeasuredCurve,
+    curve_of_points,
     fit_gaussian,
     from_ignition,
     read_record,
@@ -23,7 +24,7 @@ from tipoff.scenes.effects.measured import (
 from tipoff.scenes.effects.timed import TimedTable
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import below
-from tipoff.scenes.table import is_absent, is_zero
+from tipoff.scenes.table import is_absent, is_zero, limited
 from tipoff.scenes.units import Force, NonNegativeNumber, Time
 
 # keys whose effect is in the points
@@ -31,8 +32,8 @@ _READ = {*Choice._fields, "ignition", "remove_offset"}
 
 
 class MeasuredTable(TimedTable):
-    """``[thrust] kind = "measured"``: a file with a thrust over time; ``use`` the curve itself or its
-    Gaussian fit."""
+    """``[thrust] kind = "measured"``: a file with a thrust over time, or its points; ``use`` the curve
+    itself or its Gaussian fit."""
 
     #: A measured curve.
     kind: Literal["measured"]
@@ -50,8 +51,12 @@ class MeasuredTable(TimedTable):
     #: Instant in the file at which the scene begins; earlier points are left out.
     ignition: Time | None = Field(None, exclude_if=is_absent)
     #: File with times and thrusts, as in a CSV with the header time_s,force_N; or a motor in a .eng
-    #: or .rse file; relative to the scene file.
-    file: str
+    #: or .rse file; relative to the scene file. Either this or points.
+    file: str | None = None
+    #: Times and thrusts, in time_unit and thrust_unit; either these or file.
+    points: Annotated[tuple[tuple[float, float], ...], limited] | None = Field(
+        None, exclude_if=is_absent
+    )
     #: "curve": the points act; "fit": their Gaussian fit acts.
     use: Literal["curve", "fit"] = "curve"
     #: Largest relative error of the impulse of the fit, with use = "fit".
@@ -69,8 +74,8 @@ class MeasuredTable(TimedTable):
 
     @field_validator("file")
     @classmethod
-    def _readable(cls, file: str, info: ValidationInfo):
-        if all(key in info.data for key in (*Choice._fields, "ignition")):
+    def _readable(cls, file: str | None, info: ValidationInfo):
+        if file is not None and all(key in info.data for key in (*Choice._fields, "ignition")):
             choice = Choice(*(info.data[key] for key in Choice._fields))
             ignition = info.data["ignition"]
             curve, _ = read_record(file, choice, ignition is not None)
@@ -80,7 +85,7 @@ class MeasuredTable(TimedTable):
     @model_validator(mode="after")
     def _usable(self):
         choice = Choice(*(getattr(self, key) for key in Choice._fields))
-        curve, self._words = read_record(self.file, choice, self.ignition is not None)
+        curve, self._words = self._read(choice, self.ignition is not None)
         before, after = load_cell.levels(curve)
         if self.remove_offset and self.baseline is not None:
             raise within("remove_offset", "baseline too", "one or the other")
@@ -109,6 +114,21 @@ class MeasuredTable(TimedTable):
                 )
         return self
 
+    def _read(self, choice: Choice, may_begin_early: bool) -> tuple[MeasuredCurve, str]:
+        """The curve of the file or of the points, and what was read in words."""
+        if self.file is not None and self.points is None:
+            return read_record(self.file, choice, may_begin_early)
+        if self.points is None:
+            raise within("file", "nothing", "a file, or points")
+        if self.file is not None:
+            raise within("points", "points and a file", "one or the other")
+        try:
+            curve = curve_of_points(self.points, choice, may_begin_early)
+            from_ignition(curve, self.ignition)
+            return curve, ""
+        except ValueError as fault:
+            raise within("points", f"{len(self.points)} points", str(fault)) from fault
+
     def fit(self) -> GaussianFit | None:
         """Least-squares Gaussian of the curve, with residual and impulses; None if there is
         none."""
@@ -128,7 +148,7 @@ class MeasuredTable(TimedTable):
     def contents(self) -> tuple[dict, list[list[float]]]:
         """The table without its path, with times (s) and forces (N) of the curve."""
         points = [self._curve.time.tolist(), self._curve.force.tolist()]
-        return self.model_dump(mode="json", exclude={"file", *_READ}), points
+        return self.model_dump(mode="json", exclude={"file", "points", *_READ}), points
 
     def record(self) -> Thrust:
         """Kernel record: the curve, or one pulse."""

@@ -4,19 +4,18 @@ Without numbers it is a rocket like that of the scene ``rocket_rail``. Other siz
 the mass centre at 0.47 of the length, one button there and one at 0.06.
 """
 
-import math
 from collections.abc import Mapping
 
 import tomlkit
 
 from tipoff.files import read_input
 from tipoff.formats.designs.openrocket import Design
+from tipoff.scenes.parts import usual
 from tipoff.scenes.parts.profiles import PROFILES
 from tipoff.scenes.scene import CATALOG
 from tipoff.studies.new_scene import from_catalogue
 
 _CENTRE, _REAR = 0.46875, 0.0625  # of the length, as on the scene rocket_rail
-_MOUNT, _SPAN = 0.06, 1.5  # m: length of a clamp, and at most between two of them
 _INCLINATION, _ERROR = 85.0, 0.5  # deg
 
 _TEXT = """\
@@ -72,7 +71,7 @@ def text(
         inclination=_INCLINATION,
         curve=", ".join(f"{key} = {tomlkit.item(own).as_string()}" for key, own in curve.items()),
         errors=tomlkit.item(from_catalogue.errors_file(name)).as_string(),
-        element=_element(rail),
+        element=usual.element_size(rail),
         sources=_sources(given, size, thrust_curve),
         mass=given.get("mass", 5.0),
         length=length,
@@ -106,7 +105,7 @@ def of_design(name: str, file: str, design: Design, curve: str) -> str:
         inclination=90.0 - design.rail_angle,
         curve=f"file = {tomlkit.item(curve).as_string()}",
         errors=tomlkit.item(from_catalogue.errors_file(name)).as_string(),
-        element=_element(design.rail_length),
+        element=usual.element_size(design.rail_length),
         sources=", ".join(
             f'"{key}" = {tomlkit.item(own).as_string()}' for key, own in sources.items()
         ),
@@ -134,10 +133,6 @@ def csv(design: Design) -> str:
 
 def _button(place: float) -> str:
     return f'[[buttons]]\nplace = "{place:.6g} m"'
-
-
-def _element(rail: float) -> str:
-    return "5 mm" if rail <= 2.0 else "10 mm" if rail <= 4.0 else "20 mm"
 
 
 def errors(given: Mapping[str, float], inclination: float = _INCLINATION) -> str:
@@ -181,13 +176,7 @@ def _sources(
 
 
 def _mounts(rail: float) -> str:
-    """Clamps along a ``rail`` (m), on multiples of their length."""
-    count = max(3, math.ceil(rail / _SPAN) + 1)
-    last = 0.9 * rail - _MOUNT
-    places = [
-        max(_MOUNT * round(last * number / (count - 1) / _MOUNT), 0.0) for number in range(count)
-    ]
+    """Clamps along a ``rail`` (m)."""
     return ", ".join(
-        f'{{ start = "{place:.4g} m", end = "{place + _MOUNT:.4g} m" }}'
-        for place in sorted(set(places))
+        f'{{ start = "{start:.4g} m", end = "{end:.4g} m" }}' for start, end in usual.mounts(rail)
     )
