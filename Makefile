@@ -114,6 +114,7 @@ peers: $(READY) ## the same work in other codes: installs exudyn, mujoco and roc
 
 convergence: $(READY) ## the error of the reference itself: meshes, steps, interface stiffness, quadrature (minutes)
 	$(TIPOFF) convergence $(ASKED)
+	$(EVIDENCE) ripple $(ASKED)
 
 rails: $(READY) ## two more rails, calibrated and judged at 4 mm: they stand on the page of SCENE
 	set -e; for rail in $(filter-out $(SCENE),thin titanium); do \

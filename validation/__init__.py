@@ -1,17 +1,18 @@
 """Evidence about tipoff, outside the package: the same cases in other codes, speeds and their growth, the
 paper's random errors, the search for the inputs that the paper does not print, the recovery of hidden values,
-and measured launches of rockets.
+the ripple of a contact force, and measured launches of rockets.
 
 `python -m validation` is `tipoff` with these studies. They have sections of their own on the page, but for the
 launches, whose page is docs/measured_launches.md.
 """
 
-from validation import bench, flights, montecarlo, paper, peers, recovery, scaling
+from validation import bench, flights, montecarlo, paper, peers, recovery, ripple, scaling
 
 STUDIES = (
     montecarlo.ENTRY,
     paper.QUESTION,
     recovery.QUESTION,
+    ripple.QUESTION,
     scaling.QUESTION,
     bench.ENTRY,
     peers.ENTRY,

@@ -17,6 +17,8 @@ from tipoff.studies.render.document import Bullets, Part, markdown
 from tipoff.studies.render.table import Cells, Column, Table, number
 from tipoff.workspace.study import read
 from validation.bench import reference
+from validation.ripple import page as ripple_page
+from validation.ripple import stage as ripple
 from validation.scaling import page as scaling_page
 from validation.scaling import stage as growing
 from validation.scaling.results import Growth, Laws, Scaling
@@ -25,9 +27,9 @@ from validation.scaling.results import Growth, Laws, Scaling
 def details(folder: Path) -> str:
     """Markdown of all these tables; raises DamageError or OSError without the runs of both models."""
     highfi, lowfi = (read_json(folder / f"{name}.json") for name in ("highfi", "lowfi"))
-    refined, cost, scaling, agreement = (
+    refined, slid, cost, scaling, agreement = (
         read(folder / f"{name}.json")
-        for name in ("convergence", "cost_study", "scaling", "agreement")
+        for name in ("convergence", "ripple", "cost_study", "scaling", "agreement")
     )
     parts: list[Part] = [_promises(highfi, lowfi)]
     parts += (
@@ -35,7 +37,8 @@ def details(folder: Path) -> str:
     )
     parts += [_cost(cost_study.STAGE.read(cost))] if cost is not None else []
     parts += [_scaling(growing.STAGE.read(scaling))] if scaling is not None else []
-    parts += _convergence(convergence.STAGE.read(refined)) if refined is not None else []
+    slides = ripple_page.sentences(ripple.STAGE.read(slid)) if slid is not None else []
+    parts += _convergence(convergence.STAGE.read(refined), slides) if refined is not None else []
     if (found := reference.stored(folder.parent)) is not None:
         parts += [_bench(found["rows"])] if found["rows"] else []
         parts += [_surrogate(found["lowfi"])] if found["lowfi"] else []
@@ -109,7 +112,7 @@ def _ends(law: Growth) -> str:
     return f"{law.points[0].n:,} to {law.points[-1].n:,}"
 
 
-def _convergence(found: Convergence) -> list[Part]:
+def _convergence(found: Convergence, slides: list[str]) -> list[Part]:
     sizes = found.refined("element size")
     heads = [f"{1e3 * size:g} mm" for size in sizes[0].sizes]
     rows = [
@@ -125,7 +128,7 @@ def _convergence(found: Convergence) -> list[Part]:
     columns = [Column(head, form=".5g") for head in heads]
     return [
         f"Error of the reference itself (`make convergence`, {found.condition}):",
-        Bullets(page.sentences(found)),
+        Bullets([*page.sentences(found), *slides]),
         Table(["quantity", *columns, "order", f"± at {heads[-1]}", "method"], rows),
         _changes(found),
     ]

@@ -33,7 +33,6 @@ def _stubbed(monkeypatch) -> Labels:
     monkeypatch.setattr(timing, "warm_up", lambda run: None)
     monkeypatch.setattr(timing, "execute", lambda run, progress=None: stub.motion(run))
     monkeypatch.setattr(Study, "rail_compliances", lambda study, names: dict.fromkeys(names))
-    monkeypatch.setattr(convergence.ripple, "measure", stub.rippling)
     monkeypatch.setattr(convergence.statics, "quantities", stub.resting)
     return made
 

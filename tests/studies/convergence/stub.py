@@ -9,7 +9,6 @@ from pydantic_core import to_jsonable_python
 from tests.studies import kept
 from tests.studies.synthetic import COSTS, flight
 from tipoff import scenes
-from tipoff.studies.convergence.ripple import Ripple
 from tipoff.studies.convergence.stage import STAGE
 
 SURROGATE_ERROR = 1.2  # deg/s
@@ -50,12 +49,6 @@ def motion(run, **parts):
         cost=cost,
         **parts,
     )
-
-
-def rippling(scene, numerics):
-    """A ripple that falls with the cells of a pad; none without contact."""
-    cells = numerics.cells or 16
-    return scene.contact and Ripple(0.04 / cells, 1e-3, 750.0, 6, 200.0, cells)
 
 
 def resting(scene, sizes):

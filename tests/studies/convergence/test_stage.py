@@ -76,19 +76,6 @@ def test_interface_stiffness_and_contact_cells_are_compared_with_the_nominal_run
     ]
 
 
-def test_ripple_of_both_meshes_beside_that_of_few_cells(finished):
-    found = finished[1].result
-    assert [(row.element_size_m, row.cells_per_edge, row.ripple) for row in found.ripple] == [
-        (0.016, 3, 0.04 / 3),
-        (0.016, 16, 0.0025),
-        (0.008, 16, 0.0025),
-    ]
-    line = sentences(found)[-2]
-    assert line.startswith("ripple") and "750 Hz, facets of 8 mm: 0.25 %" in line
-    shown = document.markdown(convergence_page.draw(found))
-    assert "ripple (%)" in shown
-
-
 @pytest.mark.parametrize("error, size, sufficient", [(1.0, 16e-3, True), (0.8, 4e-3, False)])
 def test_speed_is_measured_on_the_coarsest_sufficient_mesh(
     study, monkeypatch, error, size, sufficient
@@ -200,7 +187,7 @@ def test_page_without_a_settled_run_has_no_figure(study, asked):
     written = convergence.run(study)
     page = page_of(study, written)
     shown = document.html(convergence_page.draw(written.result), page.figure)
-    assert "ripple" in shown and "chart-convergence" not in shown and page.pictures == []
+    assert "GCI" in shown and "chart-convergence" not in shown and page.pictures == []
 
 
 def test_report_takes_up_a_study_that_is_there(study, monkeypatch):

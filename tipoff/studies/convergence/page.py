@@ -24,11 +24,6 @@ _METHOD = (
     "order is not between 0.5 and 2, the factor is 3. If the changes do not decrease, the "
     "quantity is not converged, and its uncertainty is three times the range of the values."
 )
-_RIPPLE = (
-    "A payload under constant load slides along straight walls: largest amplitude of the force of "
-    "a face at the facet frequency and its next two multiples, and half-way between them, relative "
-    "to the mean force."
-)
 
 
 def draw(found: Convergence) -> list[Part]:
@@ -39,8 +34,8 @@ def draw(found: Convergence) -> list[Part]:
 
 
 def sentences(found: Convergence) -> list[str]:
-    """One sentence for each of meshes, steps, interface stiffness, contact cells, ripple and equal
-    accuracy that the result ``found`` has."""
+    """One sentence for each of meshes, steps, interface stiffness, contact cells and equal accuracy
+    that the result ``found`` has."""
     step = (
         f", {Numerics().safety:g} of the step limit on elements of {1e3 * found.coarse_size_m:g} mm"
     )
@@ -51,11 +46,6 @@ def sentences(found: Convergence) -> list[str]:
         _refinement(found, "time step", "ns", 1e9, step),
         *_largest_change("interface stiffness, times", stiffness),
         *_largest_change("contact cells along each edge of a pad,", cells),
-        *(
-            f"ripple of a constant contact force at the facet frequency {row.frequency:.4g} Hz, "
-            f"facets of {1e3 * row.element_size_m:.3g} mm: {100.0 * row.ripple:.2g} %"
-            for row in found.ripple[-1:]
-        ),
         *([found.equal_accuracy.sentence()] if found.equal_accuracy else []),
     ]
 
@@ -159,22 +149,16 @@ def _rounded(row: Refined, value: float | None, uncertainty: float | None = None
 
 
 def _changed(found: Convergence) -> list[Part]:
-    """Ripple, interface stiffness and contact cells; empty without contact."""
+    """Interface stiffness and contact cells; empty without contact."""
     if not found.interface_stiffness:
         return []
-    slides = ("element_size_m", "cells_per_edge", "frequency", "facets", "ripple", "background")
     settled = ("settled_rate_deg_s", "settled_rate_change_deg_s", "status")
     size = f"{1e3 * found.coarse_size_m:g} mm"
-
-    def fold(title: str, rows: Sequence[Any], *columns: str, notes: tuple = ()) -> list[Part]:
-        return [Fold(title, [Table.of_records(rows, *columns, notes=notes)])] if rows else []
-
+    stiffness = Table.of_records(
+        found.interface_stiffness, "factor", "interface_stiffness_n_m3", *settled
+    )
+    cells = Table.of_records(found.contact_cells, "cells_per_edge", *settled)
     return [
-        *fold("Ripple of a constant contact force", found.ripple, *slides, notes=(_RIPPLE,)),
-        *fold(
-            f"Interface stiffness, {size} elements",
-            found.interface_stiffness,
-            *("factor", "interface_stiffness_n_m3", *settled),
-        ),
-        *fold(f"Contact cells, {size} elements", found.contact_cells, "cells_per_edge", *settled),
+        Fold(f"Interface stiffness, {size} elements", [stiffness]),
+        Fold(f"Contact cells, {size} elements", [cells]),
     ]

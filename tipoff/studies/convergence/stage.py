@@ -3,8 +3,7 @@
 Meshes and steps are refined separately, and the uncertainty of every quantity is estimated from its
 observed order (``comparison.extrapolation``). Deflection and natural frequencies of the rail
 (``studies.convergence.statics``) are refined too. Runs with other interface stiffness and contact cells
-are compared. A straight slide shows the ripple of a constant force by the facets
-(``studies.convergence.ripple``). A finer mesh has a smaller step, and contact cells of at most half a
+are compared. A finer mesh has a smaller step, and contact cells of at most half a
 facet. A wall has at least one element through its thickness, so coarse meshes differ in length and width
 only; ``meshes`` has the numbers of elements. Finally both fidelities are timed at equal accuracy
 (``studies.agreement.equal_accuracy``)."""
@@ -15,16 +14,13 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from tipoff.comparison.extrapolation import Estimate, estimate
-from tipoff.highfi.numerics import Numerics
 from tipoff.results.trajectory import Trajectory
-from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import equal_accuracy, interface, refinement, verdicts
 from tipoff.studies.agreement.candidates import compliant
 from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
-from tipoff.studies.convergence import contact_loads, ripple, statics, stresses
+from tipoff.studies.convergence import contact_loads, statics, stresses
 from tipoff.studies.convergence.options import Options
 from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
-from tipoff.studies.convergence.ripple import CELLS, Ripple
 from tipoff.studies.render.column import Column
 from tipoff.workspace.progress import Board
 from tipoff.workspace.run import Run
@@ -34,7 +30,6 @@ from tipoff.workspace.timing import speedups
 
 NAME = "convergence"
 _LEAST = 3  # meshes, the fewest for an observed order
-_FEW_CELLS = 3  # along each edge of a pad: cells longer than the facets
 _LONG = 60.0  # s; a longer run of the reference is timed only once
 
 
@@ -85,21 +80,13 @@ class OtherStiffness(Change):
 class OtherCells(Change):
     """The same with another number of contact cells."""
 
-    cells_per_edge: Annotated[int, CELLS]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Slide(Ripple):
-    """Ripple on a mesh."""
-
-    element_size_m: Annotated[float, Column("element size", "mm", "g", 1e3)]
+    cells_per_edge: Annotated[int, Column("contact cells along each edge of a pad")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Convergence:
     """``quantities`` over element size and time step with order and uncertainty; runs with other
-    ``interface_stiffness`` and ``contact_cells``; ``ripple`` by element size, the first with few
-    contact cells. All three are empty without contact. ``equal_accuracy`` is None if no pad
+    ``interface_stiffness`` and ``contact_cells``, empty without contact. ``equal_accuracy`` is None if no pad
     touches, or if compliant contact or a mesh did not settle."""
 
     condition: str
@@ -110,7 +97,6 @@ class Convergence:
     quantities: tuple[Refined, ...]
     interface_stiffness: tuple[OtherStiffness, ...]
     contact_cells: tuple[OtherCells, ...]
-    ripple: tuple[Slide, ...]
     equal_accuracy: EqualAccuracy | None
 
     def refined(self, parameter: str, quantity: str = "") -> list[Refined]:
@@ -160,7 +146,6 @@ def run(study: Study, options: Options | None = None) -> Made[Convergence]:
             quantities=(*in_space, *in_time),
             interface_stiffness=_interfaces(study, name) if touching else (),
             contact_cells=_cells(study, name) if touching else (),
-            ripple=_ripples(study, scene),
             equal_accuracy=_at_equal_accuracy(study, name, in_space, dict(zip(sizes, meshes))),
         ), []
 
@@ -249,19 +234,6 @@ def _changes(study: Study, title: str, name: str, wanted: list[Run]) -> list[dic
         }
         for found in runs
     ]
-
-
-def _ripples(study: Study, scene: Scene) -> tuple[Slide, ...]:
-    settings = study.settings
-    found = [
-        (size, ripple.measure(scene, Numerics(element_size=size, cells=cells)))
-        for size, cells in (
-            (settings.coarse_size, _FEW_CELLS),
-            (settings.coarse_size, None),
-            (settings.element_size, None),
-        )
-    ]
-    return tuple(Slide(element_size_m=size, **vars(own)) for size, own in found if own)
 
 
 def _at_equal_accuracy(

@@ -1,4 +1,4 @@
-"""Ripple of the contact force at the facet frequency, at which a pad crosses the rail facets.
+"""Stage ``ripple``: ripple of the contact force at the facet frequency, at which a pad crosses the rail facets.
 
 A constant load presses the payload into a corner of the rails; the payload comes to rest and then
 slides along the rails without friction at a constant speed v. The walls are straight, so the force
@@ -13,6 +13,7 @@ ringing rail.
 """
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
@@ -26,8 +27,10 @@ from tipoff.highfi.state.threads import processors
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
 from tipoff.studies.render.column import Column
+from tipoff.workspace.stage import Made, Stage
+from tipoff.workspace.study import Study
 
-CELLS = Column("contact cells along each edge of a pad")
+_FEW_CELLS = 3  # along each edge of a pad: cells longer than the facets
 HARMONICS = 3
 _SPEED = 6.0  # m/s: the payload cannot follow so fast a passing facet
 _LOAD = 1000.0  # N
@@ -51,7 +54,43 @@ class Ripple:
     frequency: Annotated[float, Column("facet frequency", "Hz", ".4g")]
     facets: Annotated[int, Column("facets")]
     load: float
-    cells_per_edge: Annotated[int, CELLS] = 0  # ``judge`` does not know it
+    # ``judge`` does not know it
+    cells_per_edge: Annotated[int, Column("contact cells along each edge of a pad")] = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slide(Ripple):
+    """Ripple on a mesh."""
+
+    element_size_m: Annotated[float, Column("element size", "mm", "g", 1e3)]
+
+
+@dataclass(frozen=True)
+class Ripples:
+    """``rows``: the coarse mesh with few contact cells and with its own, and the mesh of the study;
+    empty without contact."""
+
+    condition: str
+    rows: tuple[Slide, ...]
+
+
+def run(study: Study) -> Made[Ripples]:
+    """Ripple on the rails of the first refined condition, or else of the first condition."""
+    name = (study.scene.agreement.refined or tuple(study.conditions))[0]
+    coarse, size = study.settings.coarse_size, study.settings.element_size
+
+    def make() -> tuple[Ripples, list[Path]]:
+        found = [
+            (size, measure(study.condition(name), Numerics(element_size=size, cells=cells)))
+            for size, cells in ((coarse, _FEW_CELLS), (coarse, None), (size, None))
+        ]
+        slides = (Slide(element_size_m=size, **vars(own)) for size, own in found if own)
+        return Ripples(name, tuple(slides)), []
+
+    return STAGE.run(study, None, make)
+
+
+STAGE = Stage("ripple", __name__, result=Ripples)
 
 
 def measure(scene: Scene, numerics: Numerics) -> Ripple | None:

@@ -6,7 +6,10 @@ import pytest
 
 from tipoff import highfi, scenes
 from tipoff.highfi import Numerics
-from tipoff.studies.convergence import ripple
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
+from validation.ripple import page
+from validation.ripple import stage as ripple
 
 FREQUENCY, FACETS, SAMPLES = 1500.0, 11, 367  # 44 mm at 6 m/s, every 0.02 ms
 
@@ -72,3 +75,31 @@ def test_nothing_is_told_where_there_is_nothing_to_tell(monkeypatch):
     assert ripple.measure(scene, Numerics(element_size=0.016)) is None
     monkeypatch.setattr(ripple, "LEAST_FACETS", 7)  # the pads cross six
     assert ripple.measure(scene, Numerics(element_size=0.008)) is None
+
+
+def test_ripple_of_both_meshes_beside_that_of_few_cells(tmp_path, monkeypatch):
+    """A ripple that falls with the cells of a pad."""
+
+    def measure(scene, numerics):
+        cells = numerics.cells or 16
+        return ripple.Ripple(0.04 / cells, 1e-3, 750.0, 6, 200.0, cells)
+
+    monkeypatch.setattr(ripple, "measure", measure)
+    study = Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
+    found = ripple.run(study).result
+    assert [(row.element_size_m, row.cells_per_edge, row.ripple) for row in found.rows] == [
+        (0.016, 3, 0.04 / 3),
+        (0.016, 16, 0.0025),
+        (0.008, 16, 0.0025),
+    ]
+    (line,) = page.sentences(found)
+    assert line.startswith("ripple") and "750 Hz, facets of 8 mm: 0.25 %" in line
+    (table,) = page.draw(found)
+    assert "ripple (%)" in table.heads
+
+
+def test_a_scene_without_contact_has_no_ripple(tmp_path):
+    """Control: above, where pads slide."""
+    free = scenes.load("tiny").replace({"contact": None, "friction": None})
+    found = ripple.run(Study(free, tmp_path / "tiny", defaults("tiny"))).result
+    assert found.rows == () and page.sentences(found) == [] and page.draw(found)[0].rows == []
