@@ -27,7 +27,7 @@ QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics 
   tests/workspace/test_models.py tests/studies/report
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest curves paper recovery flights report view pictures peers convergence rails full-report bench docs examples examples-ready check coverage hooks test test-slow fuzz wheel clean
+.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight measured curves paper recovery flights report view pictures peers convergence rails full-report bench docs examples examples-ready check coverage hooks test test-slow fuzz wheel clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-14s %s\n", $$1, $$2}' Makefile
@@ -61,8 +61,8 @@ ablation: $(READY) ## what each effect changes and costs
 ensemble: $(READY) ## 10,000 varied cases of the surrogate: what rates to expect (CASES=1000000 for a million)
 	$(TIPOFF) ensemble $(ASKED) $(if $(CASES),--cases $(CASES))
 
-droptest: $(READY) ## logs of drop tests (LOGS="a.toml b.toml"; default: simulated ones) among 1,000 simulated cases
-	$(TIPOFF) droptest $(LOGS) $(ASKED) $(if $(CASES),--cases $(CASES))
+measured: $(READY) ## logs of drop tests and launches (LOGS="a.toml b.toml"; default: simulated ones) among 1,000 simulated cases
+	$(TIPOFF) measured $(LOGS) $(ASKED) $(if $(CASES),--cases $(CASES))
 
 curves: $(READY) ## curves of other codes against the first (FILES="dyna=rbdout adams=adams.tab"; options in WITH)
 	$(TIPOFF) curves $(FILES) $(ASKED) $(WITH)

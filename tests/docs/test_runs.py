@@ -17,9 +17,10 @@ from typer.testing import CliRunner
 import tipoff
 from tests.docs import pages
 from tests.formats.curves import adams_files, dyna_files
+from tests.studies.measured import launches
 from tests.studies.new_scene.test_openrocket import DESIGN
 from tipoff.kernels.rotation import matrices
-from tipoff.studies import droptest
+from tipoff.studies import measured
 from tipoff.studies.cli import app
 
 IN_A_WHEEL = ("README.md", "docs/tutorials/surrogate_and_reference.md")
@@ -64,7 +65,7 @@ def folder(tmp_path_factory):
     small = 'extends = "tiny"\nname = "tiny"\n'
     (place / "my_launcher.toml").write_text(small + conditions)
     (place / "my_deployer.toml").write_text(small)
-    (place / "my_rocket.toml").write_text(small)
+    (place / "my_rocket.toml").write_text(small + '[gravity]\nx = "-9.80665 m/s**2"\n')
     errors = next(
         text for text in pages.of_language("docs/tutorials/tolerances.md", "toml") if "vary" in text
     )
@@ -80,15 +81,29 @@ def folder(tmp_path_factory):
     )
     (place / "thrust.csv").write_text(curve)
     (place / "design.ork").write_text(DESIGN)
-    logs = Path(droptest.__file__).parent / "logs"
+    logs = Path(measured.__file__).parent / "logs"
     for number in (0, 1):
         shutil.copy(logs / f"simulated{number}.csv", place)
         text = (logs / f"simulated{number}.toml").read_text()
         (place / f"test{number + 1}.toml").write_text(text)
+    _write_launch(place)
     _write_codes(place)
     for name in ("phi15", "phi60"):
         _write_curve(place / f"test{name.removeprefix('phi')}.csv", name)
     return place
+
+
+def _write_launch(place: Path) -> None:
+    """A launch of ``my_rocket.toml`` with the sheet of the page."""
+    blocks = pages.of_language("docs/howto/measured.md", "text")
+    (sheet,) = (text for text in blocks if "[launch]" in text)
+    (place / "flight.toml").write_text(sheet)
+    scene = tipoff.load(place / "my_rocket.toml")
+    errors = launches.drawn(np.random.default_rng(1))
+    log = launches.log(
+        tipoff.run(scene, "springs"), np.array([scene.gravity.x, 0.0, 0.0]), errors, 1
+    )
+    (place / "flight.csv").write_text(launches.text(launches.table(log)))
 
 
 def _write_curve(file: Path, condition: str) -> None:
@@ -126,7 +141,7 @@ def _small(words: tuple[str, ...]) -> list[str]:
     found = [*words]
     if "--cases" in found:
         found[found.index("--cases") + 1] = FEWEST
-    elif words[0] in ("ensemble", "flight", "droptest"):
+    elif words[0] in ("ensemble", "flight", "measured"):
         found += ["--cases", FEWEST] if "--table" not in found else []
     if "--case" in found:
         found[found.index("--case") + 1] = "7"

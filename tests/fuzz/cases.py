@@ -31,7 +31,7 @@ from tipoff.scenes import implausible, reading, scene_model, uncertainty
 from tipoff.scenes.rail import SectionTable
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.commands.running import Output, guarded, study_of
-from tipoff.studies.droptest import analysis, sheet
+from tipoff.studies.measured import analysis, sheet
 
 SCENES = ("reference", "tiny", "channel", "paper_like", "sensitive", "thin", "titanium", "clamped")
 COARSE = 8.0  # mm

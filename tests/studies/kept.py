@@ -46,7 +46,7 @@ STAGES = (
     "convergence.stage",
     "cost.stage",
     "curves.stage",
-    "droptest.stage",
+    "measured.stage",
     "flight.stage",
     "limits.stage",
     "mesh.stage",

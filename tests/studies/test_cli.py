@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from tests.written_names import RUN_ROW
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import CATALOG, load
-from tipoff.studies.cli import app, flowed
+from tipoff.studies.cli import RENAMED, app, flowed
 from tipoff.studies.report import assembly
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
@@ -104,6 +104,17 @@ def test_every_stage_refuses_an_unknown_condition(tmp_path, stage):
     result = call(stage, "--scene", "tiny", "--condition", "phi99", "--out", tmp_path / "out")
     assert result.exit_code == 2 and "phi99" in result.stderr and "Traceback" not in result.output
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", RENAMED)
+def test_a_former_name_of_a_command_is_refused_with_the_present_one(name):
+    """Control: another unknown name has no such advice."""
+    said = call(name, "--json")
+    words = " ".join(said.output.replace("│", " ").split())
+    assert said.exit_code == 2 and f"it is tipoff {RENAMED[name]} now" in words
+    now = RENAMED[name].split()
+    assert now[0] in PARAMETERS
+    assert " now" not in call("drop").output
 
 
 def test_scene_without_fitted_conditions_cannot_be_calibrated(tmp_path):

@@ -200,7 +200,7 @@ def test_a_run_that_ends_too_early_is_no_success(tmp_path, stub):
         ["calibrate", "--reference", "phi15=missing.csv"],
         ["ensemble", "--table", "missing.csv"],
         ["ensemble", "--vary", "missing.toml"],
-        ["droptest", "missing.toml"],
+        ["measured", "missing.toml"],
         ["sensitivity", "--vary", "missing.toml"],
         ["run", "--calibration", "missing.toml"],
     ],

@@ -18,7 +18,7 @@ OTHER = "run, other elements"
 SLOW = QUICK | {
     OTHER: ["--condition", "phi15", "--modes", "0", "--element-size", "16 mm"],
     "ensemble": ["--cases", "4"],
-    "droptest": ["--cases", "50"],
+    "measured": ["--cases", "50"],
     "sensitivity": ["--points", "64"],
     "calibrate": ["--model", "compliant"],
 }

@@ -29,7 +29,7 @@ measurement, unless the text says so."""
 
 TAIL = """## What is not validated
 
-- A whole ejection along rails: velocity, rates, pad forces. The logs that come with `tipoff droptest` are simulated.
+- A whole ejection along rails: velocity, rates, pad forces. The logs that come with `tipoff measured` are simulated.
 - Restitution and damping of pads on rails. Compliant contact and the finite elements lose no energy in contact but by
   friction.
 - Friction of anodised 7075. The coefficient moves the settled rates (I1 above).

@@ -166,14 +166,14 @@ def test_every_netcdf_result_carries_a_digest(tmp_path):
     """Those that only users read, too: the stages keep the digests of whole files, and who copies
     one file can check it."""
     from tipoff.files import require_whole
-    from tipoff.studies.droptest import analysis, signals
-    from tipoff.studies.droptest.sheet import SAMPLES
+    from tipoff.studies.measured import analysis, signals
+    from tipoff.studies.measured.sheet import SAMPLES
 
     drop = analysis.analyse(SAMPLES[0])
-    signals.write(tmp_path / "droptest.nc", [drop._replace(name="a"), drop._replace(name="b")])
-    require_whole(tmp_path / "droptest.nc")
-    with h5py.File(tmp_path / "droptest.nc") as file:
+    signals.write(tmp_path / "measured.nc", [drop._replace(name="a"), drop._replace(name="b")])
+    require_whole(tmp_path / "measured.nc")
+    with h5py.File(tmp_path / "measured.nc") as file:
         assert set(file) == {"a", "b"}
-    flip(tmp_path / "droptest.nc", 5000)
-    with pytest.raises(ValueError, match="droptest.nc differs from its digest"):
-        require_whole(tmp_path / "droptest.nc")
+    flip(tmp_path / "measured.nc", 5000)
+    with pytest.raises(ValueError, match="measured.nc differs from its digest"):
+        require_whole(tmp_path / "measured.nc")

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from typing import Annotated
 
 import typer
-from typer.core import TyperCommand
+from typer.core import TyperCommand, TyperGroup
 
 from tipoff.studies.commands.options import Json
 from tipoff.studies.commands.running import Output, guarded
@@ -40,7 +40,27 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit()
 
 
+# Former names of commands, and what a user types now.
+RENAMED = {
+    "droptest": "measured",
+    "lowfi": "run --all",
+    "highfi": "run --all --model finite-elements",
+    "blind": "compare --blind N",
+    "schema": "scenes --schema",
+}
+
+
+class _Group(TyperGroup):
+    """All commands. The error of a former name states the present one."""
+
+    def resolve_command(self, ctx, args):
+        if args and (now := RENAMED.get(args[0])) and args[0] not in self.commands:
+            ctx.fail(f"No such command '{args[0]}': it is tipoff {now} now.")
+        return super().resolve_command(ctx, args)
+
+
 app = typer.Typer(
+    cls=_Group,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",

@@ -9,10 +9,10 @@ from tipoff.studies import (
     convergence,
     cost,
     curves,
-    droptest,
     ensemble,
     flight,
     limits,
+    measured,
     mesh,
     nominal,
     runs,
@@ -47,7 +47,7 @@ QUESTIONS: tuple[Entry, ...] = (
     sweeps.QUESTION,
     limits.QUESTION,
     flight.QUESTION,
-    droptest.QUESTION,
+    measured.QUESTION,
 )
 ADDED: list[Entry] = []
 

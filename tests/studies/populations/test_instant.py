@@ -16,8 +16,8 @@ from tipoff.mechanics import instant
 from tipoff.mechanics.outcome import Outcome
 from tipoff.scenes.names import NOMINAL
 from tipoff.studies.cli import app
-from tipoff.studies.droptest import stage as droptest
 from tipoff.studies.limits.within import Cases
+from tipoff.studies.measured import stage as measured
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import document
@@ -174,6 +174,6 @@ def test_the_command_says_which_instant_and_why(tmp_path):
 def test_a_drop_test_says_that_the_thrust_goes_on():
     """The settled rates of the cases are those after the thrust. Control: nothing is said of a thrust
     that ends on the rail."""
-    (words,) = droptest.pushed_on(np.array([0.3, 0.31, 0.32]))
+    (words,) = measured.pushed_on(np.array([0.3, 0.31, 0.32]))
     assert words.startswith("31 % of the impulse comes after the exit: windows.exit must be")
-    assert droptest.pushed_on(np.array([0.0, 0.01])) == []
+    assert measured.pushed_on(np.array([0.0, 0.01])) == []
