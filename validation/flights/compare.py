@@ -1,13 +1,9 @@
-"""Quantities of a launch, from a record and from runs in the same way, and the place of the measured among
-the predicted ones.
+"""Both records beside runs of several models, by the quantities of ``tipoff measured``.
 
-A run is sampled at the instants of the record, turned by the unknown angle between rail and sensor, and gets
-the noise of the record. So every quantity has the noise of the measurement on both sides.
+A run is turned by the unknown angle between rail and sensor.
 """
 
-import itertools
 import math
-from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,10 +13,24 @@ import numpy as np
 from tipoff import highfi, lowfi
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.results.trajectory import Trajectory
+from tipoff.studies.measured.launch.quantities import (
+    BY_SIZE,
+    LATERAL,
+    SPEED,
+    TIME,
+    Row,
+    Stated,
+    blurred,
+    impacts,
+    over_frequency,
+    over_way,
+    rate_name,
+    table,
+)
 from tipoff.workspace.progress import say
 from validation.flights import launchers, record
 from validation.flights.launchers import GRAVITY, HEDY, PSAS, Variant
-from validation.flights.record import Record
+from validation.flights.record import Flown
 
 ELEMENT = 20e-3  # m
 MODES = 8  # as the studies of rocket_rail
@@ -29,84 +39,47 @@ MODELS = ("compliant", "no play", "springs", "pin")
 BANDS = {PSAS.name: (5.0, 25.0, 60.0, 150.0, 400.0), HEDY.name: (3.0, 8.0, 16.0, 30.0, 50.0)}  # Hz
 # deg/s between samples in turn: above six times the scatter of differences after the exit
 JUMP = {PSAS.name: 15.0, HEDY.name: 15.0}
-_SETTLED = 0.02  # s after the start, from which the rattling is taken
 
 
-@dataclass(frozen=True)
-class Row:
-    """One comparison: the ``measured`` value and its ``uncertainty``, the predicted range (2.5, 50, 97.5 %) of
-    each model, the share of values of ``compliant`` below the measured one, and whether the measured one is
-    inside the 95 % range of each model."""
-
-    quantity: str
-    unit: str
-    measured: float
-    uncertainty: float | None
-    ranges: dict[str, list[float]]
-    rank: float
-    inside: dict[str, bool]
-
-
-def quantities(own: Record, rate: np.ndarray) -> dict[str, float]:
+def quantities(own: Flown, rate: np.ndarray) -> dict[str, float]:
     """Rattling in rates (n,3) rad/s at the instants of the record: root mean squares over the way and in bands of
     frequency, deg/s, and jumps."""
-    degrees, found = np.degrees(rate), {}
-    kinds = {"roll": degrees[:, :1], "lateral": degrees[:, 1:]}
-    ends = np.linspace(0.0, float(np.interp(own.exit[0], own.time, own.way)), 4)
-    on = (own.time >= _SETTLED) & (own.time <= own.exit[0])
-    for kind, values in kinds.items():
-        for low, high in itertools.pairwise(ends):
-            part = on & (own.way >= low) & (own.way <= high)
-            found[f"rms of {kind} rate, {low:.1f} to {high:.1f} m, deg/s"] = _rms(values[part])
-        grid = np.arange(_SETTLED, own.exit[0], float(np.median(np.diff(own.time))))
-        even = np.column_stack([np.interp(grid, own.time, one) for one in values.T])
-        power = np.abs(np.fft.rfft(even - even.mean(axis=0), axis=0)) ** 2
-        frequency = np.fft.rfftfreq(grid.size, grid[1] - grid[0])
-        for low, high in zip(BANDS[own.launcher.name][:-1], BANDS[own.launcher.name][1:]):
-            band = (frequency >= low) & (frequency < high)
-            value = math.sqrt(2.0 * float(power[band].sum())) / grid.size
-            found[f"rms of {kind} rate, {low:g} to {high:g} Hz, deg/s"] = value
-    jumps = np.abs(np.diff(degrees[on], axis=0)).max(axis=1) > JUMP[own.launcher.name]
-    instants = own.time[on][1:][jumps]
-    found["impacts: jumps of a rate, number"] = float(jumps.sum())
-    found["impacts: first, s"] = float(instants[0]) if instants.size else own.exit[0]
-    found["impacts: last, s"] = float(instants[-1]) if instants.size else own.exit[0]
-    return found
+    found: dict[str, float] = {}
+    for kind in BY_SIZE.items():
+        found |= over_way(own, rate, dict([kind]))
+        found |= over_frequency(own, rate, dict([kind]), BANDS[own.launcher.name])
+    return found | impacts(own, rate, JUMP[own.launcher.name])
 
 
-def _rms(values: np.ndarray) -> float:
-    return float(np.sqrt((values**2).sum(axis=1).mean()))
-
-
-def measured(own: Record) -> dict[str, tuple[float, float | None]]:
+def measured(own: Flown) -> dict[str, Stated]:
     """Each quantity of the record and its uncertainty, None where the noise is in the predictions."""
-    rate, spread = own.exit_rate()
-    bias = own.pad_noise / math.sqrt(_independent(own))
-    spread = np.degrees(np.hypot(spread, bias))
+    rate, spread, slope = own.line()
+    bias = own.rest_noise / math.sqrt(_independent(own))
+    spread = np.degrees(np.hypot(np.hypot(spread, slope * own.half), bias))
     rate = np.degrees(rate)
     speed, change = own.at_exit(own.speed)
     scale = record.SCALE[own.launcher.name]
-    found: dict[str, tuple[float, float | None]] = {
-        "time at the end of the rail, s": (own.left, 0.5 * (own.exit[1] - own.exit[0])),
-        "speed at the end of the rail, m/s": (speed, math.hypot(change, scale * speed)),
+    found = {
+        TIME: Stated(own.left, own.half),
+        SPEED: Stated(speed, math.hypot(change, scale * speed)),
     }
     for axis, name in enumerate("xyz"):
-        found[f"rate {name} at the exit, deg/s"] = (float(rate[axis]), float(spread[axis]))
+        found[rate_name(name)] = Stated(float(rate[axis]), float(spread[axis]))
     across = math.hypot(rate[1], rate[2])
-    found["lateral rate at the exit, deg/s"] = (across, float(np.hypot(*spread[1:]) / math.sqrt(2)))
+    found[LATERAL] = Stated(across, float(np.hypot(*spread[1:]) / math.sqrt(2)))
     for name, value in quantities(own, own.rate).items():
-        found[name] = (value, None)
+        found[name] = Stated(value)
     return found
 
 
-def _independent(own: Record) -> float:
-    """Independent samples on the pad, not above one each 50 ms: shaking has periods of some tens of ms."""
-    first, last = record.PAD[own.launcher.name]
+def _independent(own: Flown) -> float:
+    """Independent samples at rest, not above one each 50 ms: shaking has periods of some tens of ms."""
+    first, last = record.REST[own.launcher.name]
     return max(2.0, (last - first) / 0.05)
 
 
 def predicted(
-    own: Record, run: Trajectory, draw: dict[str, float], seed: int
+    own: Flown, run: Trajectory, draw: dict[str, float], seed: int
 ) -> tuple[dict[str, float], np.ndarray]:
     """The same quantities of a run, and its rates (n,3) rad/s at the instants of the record, with noise."""
     clean = np.column_stack([np.interp(own.time, run.time, one) for one in run.rate.T])
@@ -129,23 +102,14 @@ def _turn(degrees: float) -> np.ndarray:
 
 
 def _with_noise(
-    own: Record, clean: np.ndarray, left: tuple[float, float], at_exit: np.ndarray, seed: int
+    own: Flown, clean: np.ndarray, left: tuple[float, float], at_exit: np.ndarray, seed: int
 ) -> tuple[dict[str, float], np.ndarray]:
     generator = np.random.default_rng(seed)
-    stated = measured(own)
-    values = [*left, *np.degrees(at_exit)]
-    found = {
-        name: value + (stated[name][1] or 0.0) * generator.standard_normal()
-        for name, value in zip(stated, values)
-    }
-    found["lateral rate at the exit, deg/s"] = math.hypot(
-        *(found[f"rate {name} at the exit, deg/s"] for name in "yz")
-    )
-    found.update(quantities(own, clean + own.shaken(generator)))
-    return found, clean
+    found = blurred(measured(own), left, at_exit, generator)
+    return found | quantities(own, clean + own.shaken(generator)), clean
 
 
-def pinned(own: Record, variant: Variant, draw: dict[str, float], seed: int) -> dict[str, float]:
+def pinned(own: Flown, variant: Variant, draw: dict[str, float], seed: int) -> dict[str, float]:
     """A rigid rocket without play that turns about its rear guide after the front one has left. The thrust
     and gravity across the rail turn it; it does not roll."""
     launcher = own.launcher
@@ -181,14 +145,14 @@ class Flight:
     """The comparison of a launch. ``band`` (n,2,3): 95 % range of the rates of ``compliant`` at the instants
     of the record, rad/s. ``lost``: runs of each model without an exit."""
 
-    own: Record
+    own: Flown
     rows: list[Row]
     band: np.ndarray
     count: int
     lost: dict[str, int]
 
 
-def compared(own: Record, folder: Path, cases: int, seed: int = 1) -> Flight:
+def compared(own: Flown, folder: Path, cases: int, seed: int = 1) -> Flight:
     """``cases`` draws for each variant of the places in each model, beside the record."""
     folder.mkdir(parents=True, exist_ok=True)
     curve = folder / f"{own.launcher.name}.csv"
@@ -233,25 +197,4 @@ def compared(own: Record, folder: Path, cases: int, seed: int = 1) -> Flight:
             pinned(own, variant, draw, 1000 * number + place) for place, draw in enumerate(draws)
         ]
     band = np.quantile(np.array(rates), [0.025, 0.975], axis=0)
-    return Flight(own, table(own, found), np.moveaxis(band, 0, 1), len(rates), lost)
-
-
-def table(own: Record, found: dict[str, list[dict[str, float]]]) -> list[Row]:
-    """Every comparison."""
-    rows = []
-    for name, (value, uncertainty) in measured(own).items():
-        values = {model: [one[name] for one in draws] for model, draws in found.items() if draws}
-        ranges = {
-            model: np.quantile(one, [0.025, 0.5, 0.975]).tolist() for model, one in values.items()
-        }
-        inside = {model: ends[0] <= value <= ends[2] for model, ends in ranges.items()}
-        quantity, _, unit = name.rpartition(", ")
-        rank = _rank(values[COMPLIANT], value)
-        rows.append(Row(quantity, unit, value, uncertainty, ranges, rank, inside))
-    return rows
-
-
-def _rank(values: Sequence[float], value: float) -> float:
-    """The share of ``values`` below ``value``; equal ones count half."""
-    every = np.array(values)
-    return float(((every < value).sum() + 0.5 * (every == value).sum()) / every.size)
+    return Flight(own, table(measured(own), found), np.moveaxis(band, 0, 1), len(rates), lost)

@@ -42,8 +42,10 @@ def test_the_reduction_finds_what_was_put_in():
     speed, way = (FORCE - GRAVITY) * at, 0.5 * (FORCE - GRAVITY) * at**2
     assert found.at_exit(found.speed)[0] == pytest.approx(speed, rel=0.01)
     assert found.at_exit(found.way)[0] == pytest.approx(way, rel=0.02)
-    rate, spread = found.exit_rate()
-    np.testing.assert_array_less(np.abs(np.degrees(rate) - EXIT_RATE), 4.0 * np.degrees(spread))
+    stated = compare.measured(found)
+    for axis, name in enumerate("xyz"):
+        rate, spread, _ = stated[f"rate {name} at the exit, deg/s"]
+        assert abs(rate - EXIT_RATE[axis]) < 4.0 * spread
     thrust = record.thrust(found)
     inner = (thrust[:, 0] > 0.02) & (thrust[:, 0] < 0.4)
     np.testing.assert_allclose(thrust[inner, 1], FORCE * PSAS.mass, rtol=1e-6)
@@ -105,5 +107,7 @@ def test_kept_values_are_those_of_the_record(kept):
     launcher = next(one for one in LAUNCHERS if one.name == kept["flight"])
     found = compare.measured(record.read(Path(folder), launcher))
     assert len(found) == len(kept["rows"])
-    for row, (value, _) in zip(kept["rows"], found.values(), strict=True):
-        assert row["measured"] == pytest.approx(value, rel=1e-9)
+    for row, stated in zip(kept["rows"], found.values(), strict=True):
+        assert row["measured"] == pytest.approx(stated.value, rel=1e-9)
+        if row["uncertainty"] is not None:
+            assert row["uncertainty"] == pytest.approx(stated.uncertainty, rel=1e-5)
