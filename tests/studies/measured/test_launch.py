@@ -72,8 +72,8 @@ def reduced(runs, seed, change=None, biased=False):
 
 
 def test_the_true_values_are_in_the_stated_intervals_as_often_as_stated(runs):
-    """At least 90 % of 200 logs: of a share of 95 % fewer come by chance in one count of 500. The scatter is neither half
-    the standard uncertainty nor much above it."""
+    """At least 90 % of 200 logs: of a share of 95 % fewer come by chance in one count of 500. The scatter is neither
+    half the standard uncertainty nor much above it."""
     found = np.array([reduced(runs, seed) for seed in range(COUNT)])
     inside = (np.abs(found[:, 0]) <= 1.0).mean(axis=0)
     spread = np.sqrt((found[:, 1] ** 2).mean(axis=0))
