@@ -18,7 +18,7 @@ import tipoff
 from tests.docs import pages
 from tests.formats.curves import adams_files, dyna_files
 from tests.studies.measured import launches
-from tests.studies.new_scene.test_openrocket import DESIGN
+from tests.studies.new_scene.test_openrocket import DESIGN, table
 from tipoff.kernels.rotation import matrices
 from tipoff.studies import measured
 from tipoff.studies.cli import app
@@ -81,6 +81,7 @@ def folder(tmp_path_factory):
     )
     (place / "thrust.csv").write_text(curve)
     (place / "design.ork").write_text(DESIGN)
+    (place / "simulation.csv").write_text(table("imperial"), encoding="utf-8")
     logs = Path(measured.__file__).parent / "logs"
     for number in (0, 1):
         shutil.copy(logs / f"simulated{number}.csv", place)
@@ -158,7 +159,7 @@ def _small(words: tuple[str, ...]) -> list[str]:
 def test_a_command_runs(words, folder, monkeypatch, tmp_path):
     monkeypatch.chdir(folder)
     if words[0] == "new":  # its file must not be there yet
-        for name in ("thrust.csv", "design.ork"):
+        for name in ("thrust.csv", "design.ork", "simulation.csv"):
             shutil.copy(name, tmp_path)
         monkeypatch.chdir(tmp_path)
     said = CliRunner().invoke(app, _small(words))

@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from tipoff import scenes
 from tipoff.formats.designs.openrocket import read_openrocket
+from tipoff.formats.designs.openrocket_table import read_simulation
 from tipoff.scenes import uncertainty
 from tipoff.studies.cli import app
 
@@ -111,3 +112,109 @@ def test_nothing_is_written_for_a_refused_design(tmp_path, monkeypatch):
     for options in (["--rocket"], [], ["--rocket", "--mass", "3 kg"]):
         made = call("new", "mine.toml", *options, "design.ork")
         assert made.exit_code == 2 and [each.name for each in tmp_path.iterdir()] == ["design.ork"]
+
+
+# made up, as OpenRocket writes it: the names with their units in a comment, and events between the rows
+TABLE = """# Windy (Up to date)
+# 5 data points written for 8 variables.
+# Time (s),Altitude (m),Mass ({mass}),Motor mass (g),CG location ({length}),\
+Longitudinal moment of inertia ({inertia}),Rotational moment of inertia ({inertia}),Thrust ({force})
+# Event LAUNCH occurred at t=0 seconds
+0,0,{m},1800,{c},{a},{r},0
+# Event LIFTOFF occurred at t=0.01 seconds
+0.05,0.1,{m},1700,{c},{a},{r},{f}
+2,99,{m},300,{c},{a},{r},{f}
+2.1,104,{m},200,{c},{a},{r},0
+9,50,{m},200,{c},{a},{r},NaN
+"""
+SI = {"mass": 9.5, "length": 1.2, "inertia": 2.6, "along": 0.014, "force": 900.0}
+# typed here from the definitions of the units: kg, m, kg m2 and N in each
+UNITS = {
+    "SI": (("kg", 1.0), ("m", 1.0), ("kg·m²", 1.0), ("N", 1.0)),
+    "usual": (("g", 1e-3), ("cm", 1e-2), ("kg·cm²", 1e-4), ("N", 1.0)),
+    "imperial": (
+        ("oz", 0.45359237 / 16.0),
+        ("in", 0.0254),
+        ("lb·ft²", 0.45359237 * 0.3048**2),
+        ("lbf", 0.45359237 * 9.80665),
+    ),
+}
+
+
+def table(units="SI", **own):
+    (mass, m), (length, c), (inertia, i), (force, f) = UNITS[units]
+    named = {"mass": mass, "length": length, "inertia": inertia, "force": force}
+    values = {"m": SI["mass"] / m, "c": SI["length"] / c, "a": SI["inertia"] / i}
+    values |= {"r": SI["along"] / i, "f": SI["force"] / f}
+    return TABLE.format(**(named | {key: f"{value:.12g}" for key, value in values.items()} | own))
+
+
+def without_results(text=DESIGN):
+    begin, end = text.index("<flightdata>"), text.index("</flightdata>") + len("</flightdata>")
+    return text[:begin] + text[end:]
+
+
+@pytest.mark.parametrize("units", UNITS)
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_a_table_beside_a_design_takes_the_place_of_its_results(
+    units, separator, tmp_path, monkeypatch
+):
+    """In any unit, the scene is that of the design with these results."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "design.ork").write_text(without_results())
+    (tmp_path / "windy.csv").write_text(table(units).replace(",", separator), encoding="utf-8")
+    alone = call("new", "alone.toml", "--rocket", "design.ork")
+    assert alone.exit_code == 2 and "the table that it exports" in " ".join(alone.stderr.split())
+    made = call("new", "mine.toml", "--rocket", "design.ork", "windy.csv")
+    assert made.exit_code == 0, made.output
+    scene = scenes.load("mine.toml")
+    assert scene.payload.mass == pytest.approx(9.5, rel=1e-5)
+    inertia = scene.payload.inertia
+    assert (inertia.xx, inertia.yy, inertia.zz) == pytest.approx((0.014, 2.6, 2.6), rel=1e-5)
+    assert sorted({pad.position[0] for pad in scene.pads}) == pytest.approx([-0.7, 0.1], abs=1e-5)
+    assert scene.thrust.requested() == pytest.approx(0.5 * 45 + 900 * 1.95 + 45, rel=1e-5)
+    for key, words in {
+        "payload.mass": ("windy.csv: line 5", "Mass ("),
+        "payload.inertia": ("windy.csv: line 5", "Rotational moment of inertia ("),
+        "thrust": ("windy.csv: ", "Thrust ("),
+        "buttons": ("design.ork: ", "railbutton"),
+    }.items():
+        text = scenes.provenance.of(scene.provenance, key)
+        assert text.startswith(words[0]) and words[1] in text, text
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("", "a table of OpenRocket with the column Mass.*Time.*Thrust"),
+        (
+            table().replace("CG location (m)", "CP location (m)").replace("Thrust (N)", "Drag (N)"),
+            "the column CG location; the column Thrust; header",
+        ),
+        (table(mass="N", force="kg"), "Mass in a unit of kg .given N.; Thrust in a unit of N"),
+        (table(inertia="s"), "Longitudinal moment of inertia in a unit of kg.m\\*\\*2 .given s"),
+        (table(inertia=""), "the column Longitudinal moment of inertia; the column Rotational"),
+        (table(m="0", a="NaN"), "Mass above zero in its first line.*Longitudinal.*given nan"),
+        (table(f="0"), "a thrust above zero"),
+        (table().replace("\n2.1,", "\n1.1,"), "times in increasing order"),
+        (table().replace("\n0,0,", "\n0.5,0,"), "the launch in its first line"),
+        (table(c="here"), "CG location .m.: a number .'here'"),
+    ],
+)
+def test_a_table_that_cannot_be_used_is_refused_with_all_that_is_wrong(text, words):
+    with pytest.raises(ValueError, match=f"(?s){words}"):
+        read_simulation(text.encode(), "windy.csv")
+
+
+def test_the_faults_of_a_design_and_of_its_table_are_listed_together(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "300")
+    (tmp_path / "design.ork").write_text(without_results().replace("railbutton", "fin"))
+    (tmp_path / "windy.csv").write_text(table(force="kg"))
+    made = call("new", "mine.toml", "--rocket", "design.ork", "windy.csv")
+    assert made.exit_code == 2 and "2 faults" in made.stderr
+    assert "two rail buttons" in made.stderr and "Thrust in a unit" in made.stderr
+    assert "stored data" not in made.stderr
+    many = call("new", "mine.toml", "--rocket", "design.ork", "windy.csv", "windy.csv")
+    assert many.exit_code == 2 and "at most one table" in many.stderr
+    assert not (tmp_path / "mine.toml").exists()

@@ -2,8 +2,9 @@
 masses in kg, angles in deg.
 
 The state at launch is the first point of the first simulation with stored data: OpenRocket writes it
-when a design is saved with its results. Places are distances behind the tip of the nose. A file with a
-document type is refused, so nothing can define an entity.
+when a design is saved with its results. A table of a simulation (``openrocket_table``) takes its place.
+Places are distances behind the tip of the nose. A file with a document type is refused, so nothing can
+define an entity.
 """
 
 import gzip
@@ -14,14 +15,11 @@ from typing import NamedTuple
 from xml.etree import ElementTree
 from xml.parsers import expat
 
+from tipoff.formats.designs.openrocket_table import COLUMNS, Simulation, sources
+
 _LARGEST = 100_000_000  # bytes of XML
 _OUTSIDE = ("nosecone", "bodytube", "transition")
-_STATE = {
-    "mass": "Mass",
-    "mass_centre": "CG location",
-    "across": "Longitudinal moment of inertia",
-    "along": "Rotational moment of inertia",
-}
+_STATE = {key: name for key, (name, _) in COLUMNS.items()}
 
 
 class Design(NamedTuple):
@@ -41,8 +39,11 @@ class Design(NamedTuple):
     sources: dict[str, str]
 
 
-def read_openrocket(data: bytes) -> Design:
-    """The design in the bytes of a file. Raises ValueError with every value that is missing."""
+def read_openrocket(
+    data: bytes, file: str = "design", simulated: Simulation | None = None
+) -> Design:
+    """The design in the bytes of a ``file``, with the state and the thrust of a table where one is
+    ``simulated``. Raises ValueError with every value that is missing."""
     root = _root(_text(data))
     missing: list[str] = []
     outside = list(_outside(root))
@@ -55,37 +56,37 @@ def read_openrocket(data: bytes) -> Design:
     guides, neck, words = _guides(outside)
     if len(guides) < 2:
         missing.append("two rail buttons or a launch lug")
-    rows, state, conditions, simulation = _simulation(root)
+    stored, conditions, simulation = _simulation(root, file)
+    state = simulated or stored
     if state is None:
         missing.append(
             "a simulation with stored data (mass, CG location, both moments of inertia, thrust): run it in "
-            "OpenRocket and save the design with its results"
+            "OpenRocket and save the design with its results, or give the table that it exports too"
         )
     rod = [_number(conditions, f"launchrod{name}") for name in ("length", "angle")]
     missing += [f"launchrod{n}" for n, v in zip(("length", "angle"), rod) if v is None]
     if missing or state is None or rod[0] is None or rod[1] is None:
         raise ValueError(f"a design that states {'; '.join(missing)}")
-    branch = f"simulation {simulation!r}, databranch, first datapoint"
     return Design(
         length=length,
         diameter=2.0 * max(radii),
         guides=guides,
         neck=neck,
-        **state,
+        mass=state.mass,
+        mass_centre=state.mass_centre,
+        across=state.across,
+        along=state.along,
         rail_length=rod[0],
         rail_angle=abs(rod[1]),
-        curve=rows,
+        curve=state.curve,
         sources={
-            "payload.length": "nosecone, bodytube, transition: length",
-            "payload.diameter": "nosecone, bodytube, transition: radius",
-            "payload.mass": f"{branch}, {_STATE['mass']}",
-            "payload.mass_centre": f"{branch}, {_STATE['mass_centre']}",
-            "payload.inertia": f"{branch}, {_STATE['along']} and {_STATE['across']}",
-            "buttons": words,
-            "rail.end": f"simulation {simulation!r}, launchrodlength",
-            "gravity.inclination": f"simulation {simulation!r}, launchrodangle",
-            "thrust": f"simulation {simulation!r}, databranch, Time and Thrust",
-        },
+            "payload.length": f"{file}: nosecone, bodytube, transition: length",
+            "payload.diameter": f"{file}: nosecone, bodytube, transition: radius",
+            "buttons": f"{file}: {words}",
+            "rail.end": f"{file}: simulation {simulation!r}, launchrodlength",
+            "gravity.inclination": f"{file}: simulation {simulation!r}, launchrodangle",
+        }
+        | state.sources,
     )
 
 
@@ -182,9 +183,9 @@ def _places(item: ElementTree.Element, front: float, whole: float) -> list[tuple
     return [(begin + 0.5 * own + number * step, own) for number in range(min(count, 1000))]
 
 
-def _simulation(root: ElementTree.Element) -> tuple:
-    """Thrust over time, the state at launch, the conditions and the name of the first simulation with
-    data; None for the state without one."""
+def _simulation(root: ElementTree.Element, file: str) -> tuple:
+    """The first simulation with data, None without one, and its conditions and name; else those of the
+    first one."""
     every = root.findall("simulations/simulation")
     for each in every:
         branch = each.find("flightdata/databranch")
@@ -193,14 +194,18 @@ def _simulation(root: ElementTree.Element) -> tuple:
         if not points or not {*_STATE.values(), "Time", "Thrust"} <= set(names):
             continue
         rows = [dict(zip(names, (point.text or "").split(","))) for point in points]
-        state = {key: _float(rows[0].get(name)) for key, name in _STATE.items()}
+        first = {key: _float(rows[0].get(name)) for key, name in _STATE.items()}
+        state = {key: value for key, value in first.items() if value is not None and value > 0.0}
         curve = [(_float(row.get("Time")), _float(row.get("Thrust"))) for row in rows]
-        if None in state.values() or not all(value > 0.0 for value in state.values() if value):
+        if len(state) < len(_STATE):
             continue
         whole = tuple((t, f) for t, f in curve if t is not None and f is not None)
-        return whole, state, each.find("conditions"), each.findtext("name", "")
+        name = each.findtext("name", "")
+        place = f"{file}: simulation {name!r}, databranch"
+        fields = sources(f"{place}, first datapoint", _STATE, f"{place}, Time and Thrust")
+        return Simulation(curve=whole, sources=fields, **state), each.find("conditions"), name
     conditions = every[0].find("conditions") if every else None
-    return (), None, conditions, every[0].findtext("name", "") if every else ""
+    return None, conditions, every[0].findtext("name", "") if every else ""
 
 
 def _number(part: ElementTree.Element | None, name: str) -> float | None:

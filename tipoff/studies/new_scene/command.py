@@ -3,12 +3,15 @@
 import os
 import sys
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from tipoff.studies.commands.options import Json
 from tipoff.studies.commands.running import Output, guarded, quantity
+
+if TYPE_CHECKING:
+    from tipoff.formats.designs.openrocket import Design
 
 # option, unit, question, answer if none is given
 _ASKED = {
@@ -35,11 +38,12 @@ def _option_name(name: str) -> str:
 def new(
     file: Annotated[Path, typer.Argument(metavar="FILE.toml", help="The scene file to write.")],
     design: Annotated[
-        Path | None,
+        list[Path] | None,
         typer.Argument(
-            metavar="[DESIGN.ork]",
-            help="With --rocket: a design of OpenRocket, saved with the results of a simulation. It gives mass, "
-            "mass centre and inertia at launch, buttons or lugs, rail and thrust.",
+            metavar="[DESIGN.ork [SIMULATION.csv]]",
+            help="With --rocket: a design of OpenRocket, saved with the results of a simulation, or the design and "
+            "the table that OpenRocket exports from a simulation. They give mass, mass centre and inertia at "
+            "launch, buttons or lugs, rail and thrust.",
         ),
     ] = None,
     mass: Annotated[str | None, _option("mass")] = None,
@@ -92,6 +96,7 @@ def new(
       tipoff new my_deployer.toml --deployer 3u --mass "4.5 kg"
       tipoff new my_rocket.toml --rocket --mass "6 kg"
       tipoff new my_rocket.toml --rocket design.ork
+      tipoff new my_rocket.toml --rocket design.ork simulation.csv
       tipoff new measured.toml --thrust-curve firing.csv
       tipoff run --scene my_launcher.toml
 
@@ -126,7 +131,7 @@ def new(
                 _of_design(
                     file, design, [*given.values(), thrust_curve, pads], rocket and not deployer
                 )
-                if design is not None
+                if design
                 else _from_catalogue(
                     file, kind, given, thrust_curve, {"pads": pads, "rocket": both or None}
                 )
@@ -234,27 +239,56 @@ def _next(found: dict) -> list[str]:
     ]
 
 
-def _of_design(file: Path, design: Path, others: list, is_rocket: bool) -> str:
-    """The scene of a design; its thrust and its errors are written beside ``file``. Raises SceneError."""
+def _of_design(file: Path, designs: list[Path], others: list, is_rocket: bool) -> str:
+    """The scene of a design, and of a table of its simulation; its thrust and its errors are written beside
+    ``file``. Raises SceneError."""
     from tipoff.faults import Fault, SceneError
-    from tipoff.files import read_input, write_text
-    from tipoff.formats.designs.openrocket import read_openrocket
+    from tipoff.files import write_text
     from tipoff.studies.new_scene import from_catalogue, rocket
 
+    given = " ".join(map(str, designs))
     if not is_rocket or any(value is not None for value in others):
         expected = "--rocket and no other option beside a design"
-        raise SceneError([Fault("DESIGN.ork", "option", str(design), expected)])
-    try:
-        found = read_openrocket(read_input(design))
-    except (OSError, ValueError) as fault:
-        words = f"a readable file ({fault.strerror})" if isinstance(fault, OSError) else str(fault)
-        raise SceneError([Fault(str(design), "design", "this file", words)]) from fault
+        raise SceneError([Fault("DESIGN.ork", "option", given, expected)])
+    if len(designs) > 2:
+        expected = "a design, and at most one table of a simulation"
+        raise SceneError([Fault("DESIGN.ork", "files", given, expected)])
+    found = _design(*designs)
     curve = f"{file.stem}_thrust.csv"
     if not file.exists():
         write_text(file.parent / curve, rocket.csv(found))
         errors = rocket.errors({"mass": found.mass}, 90.0 - found.rail_angle)
         write_text(file.parent / from_catalogue.errors_file(file.stem), errors)
-    return rocket.of_design(file.stem, design.name, found, curve)
+    return rocket.of_design(file.stem, found, curve)
+
+
+def _design(design: Path, table: Path | None = None) -> "Design":
+    """The design of a file, and of a table of its simulation. Raises SceneError, the faults of both
+    listed."""
+    from tipoff.faults import Fault, SceneError
+    from tipoff.files import read_input
+    from tipoff.formats.designs.openrocket import read_openrocket
+    from tipoff.formats.designs.openrocket_table import REFUSED, read_simulation
+
+    simulated, faults = None, []
+
+    def refuse(path: Path, error: Exception) -> None:
+        words = f"a readable file ({error.strerror})" if isinstance(error, OSError) else str(error)
+        faults.append(Fault(str(path), "design", "this file", words))
+
+    if table is not None:
+        try:
+            simulated = read_simulation(read_input(table), table.name)
+        except (OSError, ValueError) as error:
+            refuse(table, error)
+            simulated = REFUSED
+    try:
+        found = read_openrocket(read_input(design), design.name, simulated)
+    except (OSError, ValueError) as error:
+        refuse(design, error)
+    if faults:
+        raise SceneError(faults)
+    return found
 
 
 def _length_and_diameter(text: str) -> tuple[float, float]:

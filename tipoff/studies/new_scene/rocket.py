@@ -87,15 +87,15 @@ def text(
     )
 
 
-def of_design(name: str, file: str, design: Design, curve: str) -> str:
-    """The scene as TOML for a ``design`` from a ``file``, whose thrust is in the file ``curve``. Each value
-    has the file and its field as provenance."""
+def of_design(name: str, design: Design, curve: str) -> str:
+    """The scene as TOML for a ``design``, whose thrust is in the file ``curve``. Each value has its file and
+    field as provenance."""
     rear, *others = sorted(design.length - place for place in design.guides)
     moments = {"xx": design.along, "yy": design.across, "zz": design.across}
     inertia = ", ".join(f'{axis} = "{value:.6g} kg*m**2"' for axis, value in moments.items())
     sources = {"buttons": "assumed: the profile", "rail": "assumed", "thrust_offset": "assumed"}
     sources |= dict.fromkeys(("contact", "friction"), "assumed: acetal on aluminium")
-    sources |= {key: f"{file}: {field}" for key, field in design.sources.items()}
+    sources |= design.sources
     sources |= dict.fromkeys(("payload.size",), sources["payload.length"])
     sources["thrust.arm"] = "assumed: the nozzle at the tail"
     small = design.neck is None or design.neck < PROFILES["1010"].slot
