@@ -7,7 +7,7 @@ from scipy import stats
 
 from tipoff.faults import SceneError
 from tipoff.scenes import load, uncertainty
-from tipoff.scenes.distributions import BY_NAME
+from tipoff.scenes.distributions import BY_NAME, narrowed
 
 KEY = "payload.mass"
 MIDDLES = (np.arange(1_000_000) + 0.5) / 1_000_000  # quadrature of any function of a quantile
@@ -150,3 +150,25 @@ def test_the_errors_of_a_scene_are_the_default():
     assert uncertainty.chosen(None, own) == "cubesat_3u"
     assert uncertainty.chosen("paper", own) == "paper"
     assert uncertainty.chosen(None, own.replace({"studies": None})) == uncertainty.DEFAULT
+
+
+@pytest.mark.parametrize(
+    "drawn, middle",
+    [
+        (table("uniform", low=-1.0, high=3.0), 1.0),
+        (table("normal", mean=2.0, sd=0.5), 2.0),
+        (table("truncated-normal", mean=2.0, sd=0.5, low=1.5, high=4.0, rule="redraw"), 2.0),
+        (table("truncated-normal", mean=2.0, sd=0.5, low=1.5, high=4.0, rule="clip"), 2.0),
+        (table("rayleigh", scale=0.3), 0.0),
+        (table("fixed", value=7.0), 7.0),
+    ],
+)
+def test_a_narrowed_distribution_moves_each_draw_towards_its_middle(drawn, middle):
+    """And towards another place that is given. The logarithm of a log-uniform number moves."""
+    u = np.linspace(0.001, 0.999, 999)
+    values = drawn.ppf(u)
+    assert np.allclose(narrowed(drawn, 0.5).ppf(u), middle + 0.5 * (values - middle), rtol=1e-9)
+    assert np.allclose(narrowed(drawn, 0.5, 0.0).ppf(u), 0.5 * values, rtol=1e-9, atol=1e-12)
+    logarithmic = table("log-uniform", low=0.25, high=16.0)
+    found = np.log(narrowed(logarithmic, 0.5).ppf(u))
+    assert np.allclose(found, np.log(2.0) + 0.5 * (np.log(logarithmic.ppf(u)) - np.log(2.0)))

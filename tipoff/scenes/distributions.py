@@ -155,3 +155,34 @@ BY_NAME: dict[str, type[Distribution]] = {
     "truncated-normal": TruncatedNormal,
     "rayleigh": Rayleigh,
 }
+
+
+def narrowed(item: Distribution, share: float, about: float | None = None) -> Distribution:
+    """The distribution of ``c + share (x - c)`` of a number x with the distribution ``item``; c is ``about``
+    (SI), or the middle of ``item``: its mean, the middle between its limits (of their logarithms, if it is
+    log-uniform), and zero of a Rayleigh distribution. The quantile at each probability moves in the same
+    way, so both distributions have the same draws."""
+    if about is None and isinstance(item, LogUniform):
+        middle = np.sqrt(item.low * item.high)
+        ends = {name: middle * (getattr(item, name) / middle) ** share for name in ("low", "high")}
+        return item.model_copy(update=ends)
+    centre = _middle(item) if about is None else about
+    moved: dict[str, float] = {}
+    for name in type(item).model_fields:
+        if name in ("value", "mean", "low", "high"):
+            moved[name] = centre + share * (getattr(item, name) - centre)
+        elif name in ("sd", "scale"):
+            moved[name] = share * getattr(item, name)
+    return item.model_copy(update=moved)
+
+
+def _middle(item: Distribution) -> float:
+    match item:
+        case Fixed():
+            return item.value
+        case Normal() | TruncatedNormal():
+            return item.mean
+        case Rayleigh():
+            return 0.0
+        case _:
+            return 0.5 * (item.low + item.high)

@@ -8,13 +8,13 @@ that it needs, so that ``--help`` is fast.
 import inspect
 import json
 from collections.abc import Callable, Iterable
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
 from tipoff.studies.commands.options import Json
-from tipoff.studies.commands.running import Output, guarded
+from tipoff.studies.commands.running import Output, guarded, stop
 from tipoff.studies.new_scene.command import new
 from tipoff.studies.question import Entry
 from tipoff.studies.registry import COMPARISON, ON_DEMAND, QUESTIONS
@@ -171,8 +171,23 @@ def flowed(text: str) -> str:
     )
 
 
+_IN_THE_FILE = "the file of errors states it, as its key {0}: --vary FILE"
+_MOVED = {
+    ("ensemble", "--seed"): _IN_THE_FILE.format("seed"),
+    ("ensemble", "--sampling"): _IN_THE_FILE.format("sampling"),
+}
+
+
 class _Command(TyperCommand):
-    """A command whose help lists formats of files. Their readers load when the help is shown."""
+    """A command whose help lists formats of files. Their readers load when the help is shown. The refusal
+    of an option that was moved says where it is now."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        for given in args:
+            option = given.partition("=")[0]
+            if words := _MOVED.get((self.name or "", option)):
+                stop(f"{option}: option: no longer one: {words}", 2)
+        return super().parse_args(ctx, args)
 
     @property
     def help(self) -> str:

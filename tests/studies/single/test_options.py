@@ -38,7 +38,7 @@ def test_numerics_of_the_command_are_those_of_the_run(options, numerics, tmp_pat
         ),
         ("run --all --checkpoint-every 1s", ["--checkpoint-every"]),
         ("compare --vary paper --seed 3", ["--vary", "--seed"]),
-        ("ensemble --table t.csv --vary paper --seed 3", ["vary", "seed"]),
+        ("ensemble --table t.csv --vary paper --cases 3 --halve", ["vary", "cases", "halve"]),
         (
             "ensemble --case 1 --at exit --limit 1 --scheduler tcp://a:1 --export csv a.csv",
             ["--at", "--limit", "--scheduler", "--export"],

@@ -1,8 +1,10 @@
 """Run the surrogate on thousands to millions of varied cases; writes ensemble.json and a zarr
 store.
 
-A file of distributions defines the inputs that vary; --cases, --seed and --sampling override
-it:
+A file of errors states what varies, and cases, seed and sampling:
+
+  cases = 10000
+  seed = 1
 
   \\[vary."payload.mass"]
   distribution = "normal"
@@ -14,7 +16,8 @@ sd, low, high, rule "redraw" or "clip") and rayleigh (scale). A table has dotted
 first line, units in the second or in each cell, and one case in every further line.
 
   tipoff ensemble --cases 1000000
-  tipoff ensemble --vary my_errors.toml --sampling sobol --cases 4096
+  tipoff ensemble --vary my_errors.toml --cases 4096
+  tipoff ensemble --vary my_errors.toml --limit "5 deg/s" --halve    # which tolerance to tighten
   tipoff ensemble --table cases.csv --store out/night
   tipoff ensemble --cases 1000000 --case 1234    # that case alone, compared with the store
   tipoff ensemble --sensitivity                  # count the sensitive cases too
@@ -22,6 +25,9 @@ first line, units in the second or in each cell, and one case in every further l
 After an interruption or a full disk, the same command continues and gives the same bits. A case
 with bad input is refused, and the others run; the store lists it with its inputs and the reason
 (done/*.json). xarray.open_zarr(STORE + "/cases.zarr") reads the results.
+
+--halve halves each tolerance in turn. All cases keep their draws, so the changes have small bounds. The
+figure halved.png is in the folder of the results.
 
 --sensitivity adds the variables rate_change_by_clearance and rate_change_by_tolerance (rad/s),
 also to an existing store. They are NaN if the case or its disturbed run does not settle. The

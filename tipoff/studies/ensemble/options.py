@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -38,16 +38,6 @@ class Options:
             "--cases", metavar="N", min=1, help="Number of cases; default: from the file."
         ),
     ] = None
-    seed: Annotated[
-        int | None,
-        typer.Option(
-            "--seed", metavar="N", min=0, help="Seed of all draws; default: from the file."
-        ),
-    ] = None
-    sampling: Annotated[
-        Literal["random", "latin-hypercube", "sobol"] | None,
-        typer.Option("--sampling", help="Method of drawing; default: from the file."),
-    ] = None
     store: Annotated[
         Path | None,
         typer.Option(
@@ -67,6 +57,14 @@ class Options:
             help="Also run each case with 1 µm more of every clearance, and at a tolerance of 1e-10. "
             "The result is the change of its settled rates. The runs at 1e-10 take about 20 times as "
             "long as the cases at the default --tolerance.",
+        ),
+    ] = False
+    halve: Annotated[
+        bool,
+        typer.Option(
+            "--halve",
+            help="Also run the cases with each tolerance halved in turn, on the same draws. The result is the "
+            "change of the 95 % quantile of the total rate, and of the probability above --limit.",
         ),
     ] = False
     tolerance: Annotated[
@@ -106,6 +104,7 @@ class Options:
             "--limit": ", ".join(self.limits),
             "--export": " ".join(map(str, self.export or ())),
             "--scheduler": self.scheduler,
+            "--halve": "yes" if self.halve else "",
         }
         expected = "none with --case, which prints one case with all its values"
         faults = [Fault(name, "option", value, expected) for name, value in given.items() if value]

@@ -1,12 +1,16 @@
 """An ensemble for the terminal: quantiles with bounds, and the distributions of the inputs."""
 
+from typing import Any
+
 from tipoff.mechanics.instant import EXIT, Instant
 from tipoff.scenes import overrides
 from tipoff.scenes.scene import Scene
+from tipoff.studies.ensemble.halves import SHARE, Halved
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.ensemble.stage import Cost, One, Ran, Sensitive
+from tipoff.studies.populations.paired import Bounded
 from tipoff.studies.render.document import Bullets, Part
-from tipoff.studies.render.table import Table, estimate, percent
+from tipoff.studies.render.table import Column, Table, bounded, estimate, percent
 from tipoff.studies.render.uncertain import LEAST, number
 from tipoff.workspace.words import counted
 
@@ -46,6 +50,7 @@ def summary(found: Ran) -> list[Part]:
         *_varied(found.cases.get("vary", {})),
         *([table_of_quantiles(found)] if found.quantiles else []),
         *([_above(found)] if found.above else []),
+        *([table_of_halves(found)] if found.halves else []),
         f"run time: {_time(cost)}; {(cost.peak_memory_bytes or 0) / 1e6:.0f} MB of memory at most",
         *(_sensitivity(found.sensitivity) if found.sensitivity else []),
         f"store: {found.store}",
@@ -118,6 +123,49 @@ def table_of_quantiles(found: Ran) -> Table:
     shares = [row.share for row in next(iter(found.quantiles.values()))]
     heads = ["quantity", *(f"{percent(share, 'g')} % below" for share in shares)]
     return Table(heads, rows, notes=(f"{found.confidence:.0%} bounds: {found.bounds}.",))
+
+
+def table_of_halves(found: Ran) -> Table:
+    """The errors as stated, and with each tolerance halved."""
+    limited = found.halves[0].above is not None
+    rate = Column(f"{100.0 * SHARE:g} % quantile of the total rate", "deg/s")
+    above = Column("above a limit", "%")
+    heads: list[Column | str] = ["halved tolerance", "95 % of its values", "halved", rate, "change"]
+    rows = [_half(row, limited) for row in found.halves]
+    lost = sum(row.unsettled for row in found.halves)
+    notes = [
+        f"All rows have the same draws. Bounds: {found.confidence:.0%}; those of a change are from the pairs of "
+        "cases."
+        if found.halves[0].rate.low is not None
+        else f"Bounds: {found.bounds}."
+    ]
+    if lost:
+        notes.append(
+            f"{counted(lost, 'case')} of all rows without a rate: in no quantile, and above a limit."
+        )
+    if limited:
+        heads += [above, "change"]
+    return Table(heads, rows, notes=tuple(notes))
+
+
+def _half(row: Halved, limited: bool) -> tuple:
+    cells = [
+        row.tolerance or "none",
+        row.stated,
+        row.halved,
+        _cell(row.rate),
+        _cell(row.rate_change),
+    ]
+    if limited:
+        cells += [_cell(row.above, 100.0), _cell(row.above_change, 100.0)]
+    return tuple(cells)
+
+
+def _cell(found: Bounded | None, scale: float = 1.0) -> Any:
+    if found is None:
+        return ""
+    low, high = (None if end is None else scale * end for end in (found.low, found.high))
+    return bounded(scale * found.value, low, high)
 
 
 def _named(key: str) -> str:

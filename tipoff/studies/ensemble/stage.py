@@ -24,15 +24,19 @@ from tipoff.mechanics import instant
 from tipoff.mechanics.instant import Instant
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.results import hand_over
-from tipoff.scenes import implausible, uncertainty
+from tipoff.scenes import halving, implausible, uncertainty
+from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.ensemble import sensitivity, summary
+from tipoff.studies.ensemble import halves, sensitivity, summary
+from tipoff.studies.ensemble.halves import Halved
 from tipoff.studies.ensemble.options import Options
 from tipoff.studies.ensemble.sensitivity import Sensitivity
 from tipoff.studies.ensemble.summary import Statistics
 from tipoff.studies.populations import exceedance, population
+from tipoff.studies.populations.exceedance import Limit
 from tipoff.workspace import kernel_marks, machine, words
+from tipoff.workspace.attempt import attempt
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study, StudyError, numerics_faults
@@ -60,7 +64,8 @@ class Sensitive(Sensitivity):
 
 @dataclass(frozen=True, kw_only=True)
 class Ran(Statistics):
-    """The result: statistics of the ``store``; ``sensitivity`` None if not requested."""
+    """The result: statistics of the ``store``; ``sensitivity`` None if not requested, ``halves`` empty
+    if not."""
 
     stage: str = "ensemble"
     scene: str
@@ -68,6 +73,7 @@ class Ran(Statistics):
     implausible: list[str]
     store: str
     sensitivity: Sensitive | None
+    halves: tuple[Halved, ...]
     agreement: str
     run: Cost
     hardware: dict[str, Any]
@@ -108,16 +114,17 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
     no model is named and the agreement table rejects the default."""
     fitted = constants(options.chosen.calibration, options.chosen.model, study.scene.name)
     changed = {
-        name: value
-        for name in ("vary", "cases", "seed", "sampling")
-        if (value := getattr(options, name)) is not None
+        name: value for name in ("vary", "cases") if (value := getattr(options, name)) is not None
     }
     if options.table is not None:
-        if changed:
-            expected = "no such option: the table lists its cases"
-            raise SceneError(
-                [Fault("--table", name, str(value), expected) for name, value in changed.items()]
+        expected = "no such option: the table lists its cases"
+        faults = [Fault("--table", name, str(value), expected) for name, value in changed.items()]
+        if options.halve:
+            faults.append(
+                Fault("--table", "halve", "yes", "no such option: a table has no tolerances")
             )
+        if faults:
+            raise SceneError(faults)
         source: Any = TableFile(options.table)
     else:
         vary = uncertainty.chosen(changed.pop("vary", None), study.scene)
@@ -168,15 +175,19 @@ def run(study: Study, options: Options) -> Ran:
     try:
         store = ensemble.store(path)
         ensemble.case(0)  # compiles the kernels or loads them from disk, before a time is taken
-        with Board("ensemble", 3 if options.sensitivity else 1) as board:
+        tolerances = halving.tolerances(ensemble.source.uncertainty) if options.halve else {}
+        fills = 1 + len(tolerances) + (len(sensitivity.CAUSES) if options.sensitivity else 0)
+        at = _instant(ensemble, options)
+        with Board("ensemble", fills) as board:
             cost = _filled(study, ensemble, store, options, board)
             told = _sensitivity(study, ensemble, store, options, board)
+            rows = _halves(study, ensemble, store, options, board, at, limits)
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
     if options.export:
         _export(study, store, options.export)
     memory = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    at, calibrated = _instant(ensemble, options), options.calibration is not None
+    calibrated = options.calibration is not None
     found = Ran(
         **vars(summary.of(ensemble, store, calibrated, at, limits)),
         scene=study.scene.name,
@@ -184,12 +195,29 @@ def run(study: Study, options: Options) -> Ran:
         implausible=[*implausible.of_all_conditions(study.scene), *population.doubtful(ensemble)],
         store=str(path),
         sensitivity=told,
+        halves=rows,
         agreement=_agreement(study, options),
         run=replace(cost, peak_memory_bytes=memory),
         hardware=machine.describe(),
     )
+    found = _drawn(found, Path(store.path), [limit.words for limit in limits])
     write_json(study.path("ensemble.json"), found.plain)
     return found
+
+
+def _drawn(found: Ran, folder: Path, limits: list[str]) -> Ran:
+    """The result, after its figures are drawn into the ``folder`` of its store; ``failed`` of it has the
+    reason if they cannot be drawn."""
+
+    def files() -> None:
+        from tipoff.studies.ensemble import figures
+        from tipoff.studies.render import chart
+
+        if found.halves:
+            chart.to_files(figures.of_halves(found.halves, limits), folder)
+
+    _, reason = attempt("drawing the figures", files)
+    return replace(found, failed=[*found.failed, f"figures: {reason}"]) if reason else found
 
 
 def _export(study: Study, store: Store, export: tuple[str, Path]) -> None:
@@ -241,6 +269,32 @@ def _sensitivity(
         costs[cause] = _filled(study, twin, disturbed[cause], options, board, words_)
         twins.add(store, cause, twin, disturbed[cause])
     return Sensitive(**vars(sensitivity.of(store, disturbed, _limit(study))), run=costs)
+
+
+def _halves(
+    study: Study,
+    ensemble: Ensemble,
+    store: Store,
+    options: Options,
+    board: Board,
+    at: Instant,
+    limits: list[Limit],
+) -> tuple[Halved, ...]:
+    """What each halved tolerance gains, by the rates ``at`` an instant; the cases of each are in a store of
+    their own within that of the ensemble. Empty if not requested."""
+    if not options.halve:
+        return ()
+    rate = "exit_rate" if at.at == instant.EXIT else "rate"
+
+    def rates(errors: Uncertainty, name: str) -> np.ndarray:
+        if not name:
+            return np.degrees(store.column(rate))
+        changed = ensemble._replace(source=Drawn(errors))
+        inside = changed.store(store.path / "halved" / name)
+        _filled(study, changed, inside, options, board, f"half of {name}")
+        return np.degrees(inside.column(rate))
+
+    return halves.table(ensemble.source.uncertainty, rates, limits)
 
 
 def _limit(study: Study) -> float:

@@ -1,0 +1,84 @@
+"""Tolerances of a file of errors, and the file with one of them halved.
+
+A tolerance is the scatter of one input, or of an offset (misalignment, eccentricity), whose keys are one
+vector. An offset in any direction has half the size for the same draw; all other inputs move halfway to
+the middle of their distribution. So a halved tolerance changes no draw of any input.
+"""
+
+import math
+
+import numpy as np
+
+from tipoff.scenes import overrides as keys
+from tipoff.scenes.distributions import Distribution, Fixed, Uniform, narrowed
+from tipoff.scenes.rounding import at_most
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.uncertainty import Uncertainty
+from tipoff.units import COMMON_FACTORS
+
+_OFFSETS = ("misalignment", "eccentricity")
+_HALF = 0.5
+_SPAN = 0.95  # share of the values between the ends of a range in words
+_SHOWN = {"rad": "deg", "m": "mm", "rad/s": "deg/s", "s": "ms"}
+
+
+def tolerances(errors: Uncertainty) -> dict[str, tuple[str, ...]]:
+    """The varied keys of each tolerance of ``errors``, by its dotted name. An input that has one value has
+    no tolerance, unless it is the size of an offset in any direction."""
+    found: dict[str, tuple[str, ...]] = {}
+    for key in errors.vary:
+        table = key.rpartition(".")[0]
+        name = table if table.endswith(_OFFSETS) else key
+        found[name] = (*found.get(name, ()), key)
+    return {
+        name: own
+        for name, own in found.items()
+        if _any_direction(errors, name)
+        or not all(isinstance(errors.vary[key], Fixed) for key in own)
+    }
+
+
+def halved(errors: Uncertainty, name: str) -> Uncertainty:
+    """``errors`` with the tolerance ``name`` of ``tolerances`` halved."""
+    changed = {key: _half(errors, name, key) for key in tolerances(errors)[name]}
+    return errors._replace(vary=errors.vary | changed)
+
+
+def _half(errors: Uncertainty, name: str, key: str) -> Distribution:
+    item = errors.vary[key]
+    if _whole_turn(item):
+        return item
+    from_zero = key.endswith(".axial") and (
+        _any_direction(errors, name) or (isinstance(item, Uniform) and item.low == 0.0)
+    )
+    return narrowed(item, _HALF, 0.0 if from_zero else None)
+
+
+def _any_direction(errors: Uncertainty, name: str) -> bool:
+    """Whether ``name`` is an offset of a size in any direction."""
+    direction = errors.vary.get(f"{name}.radial")
+    return direction is not None and _whole_turn(direction) and f"{name}.axial" in errors.vary
+
+
+def _whole_turn(item: Distribution) -> bool:
+    return isinstance(item, Uniform) and at_most(2.0 * math.pi, item.high - item.low)
+
+
+def words(errors: Uncertainty, name: str) -> str:
+    """The ranges that have 95 % of the values of a tolerance, with their units."""
+    own = [key for key in tolerances(errors)[name] if not _whole_turn(errors.vary[key])]
+    shown = [_range(key, errors.vary[key]) for key in own]
+    if len(own) == 1 or len(set(shown)) == 1:
+        return shown[0]
+    return ", ".join(f"{key.rpartition('.')[2]} {text}" for key, text in zip(own, shown))
+
+
+def _range(key: str, item: Distribution) -> str:
+    unit = keys.unit(Scene, key) or ""
+    name = _SHOWN.get(unit, unit)
+    factor = COMMON_FACTORS[unit][name] if name != unit else 1.0
+    from_zero = key.endswith(".axial") and float(item.ppf(np.array(0.0))) == 0.0
+    ends = (0.0, _SPAN) if from_zero else (0.5 - 0.5 * _SPAN, 0.5 + 0.5 * _SPAN)
+    low, high = (float(item.ppf(np.array(share))) / factor for share in ends)
+    text = f"{low:.3g}" if high - low <= 1e-12 * abs(high) else f"{low:.3g} to {high:.3g}"
+    return text if unit in ("", "dimensionless") else f"{text} {name}"
