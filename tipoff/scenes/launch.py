@@ -45,7 +45,8 @@ def of(scene: Any) -> Launch:
     """The launch of ``scene``."""
     thrust, platform, first, latch = scene.thrust, scene.platform, scene.initial, scene.hold_down
     reacts = platform is not None and thrust.reaction == "platform"
-    is_steady = thrust.kind == "constant" and thrust.start <= 0.0
+    latched = hold_down.release_time(scene)
+    is_steady = thrust.kind == "constant" and thrust.start <= 0.0 and latched == 0.0
     carried = first.platform_velocity.x if first is not None and platform is not None else 0.0
     rates = (first.rate, first.platform_rate) if first is not None else ()
     tilt = scene.thrust_offset
@@ -63,8 +64,8 @@ def of(scene: Any) -> Launch:
         begun=first.velocity.x - carried if first is not None else 0.0,
         place=_begun(first),
         turns=any(any((rate.x, rate.y, rate.z)) for rate in rates),
-        rests=(first is None or first.velocity.x == 0.0) and (latch is None or latch.release > 0.0),
-        latched=hold_down.release_time(scene),
+        rests=(first is None or first.velocity.x == 0.0) and (latch is None or not latch.is_open),
+        latched=latched,
         rail=(scene.rail.start, scene.rail.end),
         pads=(_rear(scene.pads), max(pad.position[0] + 0.5 * pad.length for pad in scene.pads)),
         friction=scene.friction.static if scene.friction and scene.contact else 0.0,

@@ -15,12 +15,16 @@ from tipoff.scenes.effects.hold_down import release_time
 
 @pytest.mark.case("O91")
 @pytest.mark.slow
+@pytest.mark.parametrize("by_time", [False, True])
 @pytest.mark.parametrize("platform", [True, False])
-def test_the_speed_at_the_exit_is_the_impulse_after_the_release(platform):
+def test_the_speed_at_the_exit_is_the_impulse_after_the_release(platform, by_time):
     """Within the impulse of a step. Control: without a hold-down the payload is faster."""
     absent = {"friction": None, "thrust_offset": None} | ({} if platform else {"platform": None})
     asked = tiny(**absent, hold_down={"release": 2000.0})
-    run, at = highfi.run(asked, COARSE), release_time(asked)
+    at = release_time(asked)
+    if by_time:
+        asked = asked.replace({"hold_down": {"release_time": at}})
+    run = highfi.run(asked, COARSE)
     law, mass = asked.thrust.record(), asked.payload.mass
     assert sample(law, np.array([at]))[0] == pytest.approx(2000.0, rel=1e-12)
     speed = run.to_xarray().relative_velocity.values[:, 0]

@@ -92,6 +92,37 @@ def test_the_line_of_the_latch_has_no_speed_along_the_rail():
     assert np.abs(base.inv().apply(other)[:, 0]).max() > 1e-3
 
 
+@pytest.mark.case("O91")
+@pytest.mark.parametrize("gravity", [0.0, -G])
+def test_a_release_at_a_time_is_a_thrust_that_begins_then(gravity):
+    """A steady thrust from ignition on, and a latch until t_0: the payload does not move before, and then as
+    under a thrust that begins at t_0. Control: without the latch it moves at once."""
+    at, tables = 5e-3, {"gravity": {"x": gravity, "y": 0.0, "z": 0.0}}
+    push = {"kind": "constant", "force": 1000.0, "start": 0.0, "duration": 0.1}
+    asked = held(0.0, thrust=push, **tables)
+    asked = asked.replace({"hold_down": {"release_time": at}})
+    shifted = held(500.0, thrust=push | {"start": at}, **tables)
+    run, other = (lowfi.run(each, "springs") for each in (asked, shifted))
+    before = run.time < at
+    assert before.sum() > 3 and np.abs(run.velocity[before]).max() < 1e-12
+    assert np.abs(run.position[before] - run.position[0]).max() < 1e-14
+    for name in ("position", "velocity", "rate"):
+        np.testing.assert_allclose(getattr(run, name), getattr(other, name), atol=1e-10)
+    speed = (1000.0 / MASS + gravity) * (run.time[-1] - at)
+    assert run.velocity[-1, 0] == pytest.approx(speed, rel=1e-9)
+    free = lowfi.run(asked.replace({"hold_down": {"release_time": 0.0}}), "springs")
+    assert free.velocity[before][-1, 0] > 0.1
+
+
+def test_a_release_by_thrust_and_at_its_time_are_one():
+    """Control: another time gives another motion."""
+    at = released(1000.0)
+    by_thrust = lowfi.run(held(1000.0), "springs")
+    for time, same in ((release_time(held(1000.0)), True), (at + 1e-3, False)):
+        run = lowfi.run(held(0.0).replace({"hold_down": {"release_time": time}}), "springs")
+        assert (run.velocity.tobytes() == by_thrust.velocity.tobytes()) is same
+
+
 def test_a_payload_on_an_upright_rail_does_not_fall():
     """Gravity pulls it back before the release. Control: with a release at ignition it falls."""
     late = {"kind": "constant", "force": 1000.0, "start": 5e-3, "duration": 0.1}
@@ -226,6 +257,11 @@ def test_a_curve_that_jumps_releases_at_the_jump():
         ),
         ({"initial.velocity.x": 1.0}, "initial: given a velocity along the rail"),
         ({"hold_down.release": -1.0}, "hold_down.release"),
+        ({"hold_down.release_time": 1e-3}, "exactly one of release and release_time"),
+        (
+            {"hold_down": {"release_time": 1.0}},
+            "given 1 s, expected less than the duration, 0.014 s",
+        ),
         (
             {"thrust": {"kind": "spring", "preload": 100.0, "rate": 1000.0, "stroke": 0.01}},
             "hold_down: given a table, expected none: springs push",
