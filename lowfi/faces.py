@@ -9,7 +9,7 @@ from tipoff.mechanics.model import Model
 # (``lowfi.contact.wall_ends``): largest distance (m) of the middle of the face beyond an end of the
 # rail, its centred place across the rail (m, platform axes) and the largest distance (m) from
 # there, the thickness of the wall (m), and the depth (m) at which its edge may still pass that of
-# the wall.
+# the wall. Last the number of its guide.
 (
     CENTRE,
     NORMAL_Y,
@@ -22,8 +22,9 @@ from tipoff.mechanics.model import Model
     SIDE_REACH,
     BACK,
     ROUND,
+    GUIDE,
     FACE_SIZE,
-) = (0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13)
+) = (0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14)
 ROUNDED = 1e-6  # m, least radius of the edges of pads and walls, and least accuracy of a gap
 LAST_STRIP = 0.01  # of half a face: the part still over a compliant wall when the face leaves it
 
@@ -37,7 +38,7 @@ def table(model: Model, compliance) -> np.ndarray:
     found[:, NORMAL_Y] = np.where(faces.axis == 1, faces.sign, 0.0)
     found[:, NORMAL_Z] = np.where(faces.axis == 2, faces.sign, 0.0)
     found[:, WALL], found[:, HALF_LENGTH] = faces.sign * faces.wall, faces.half_length
-    found[:, NUMBER] = np.arange(faces.axis.size)
+    found[:, NUMBER], found[:, GUIDE] = np.arange(faces.axis.size), faces.guide
     if compliance is not None:
         found[:, OVERHANG] = compliance.half[:, 0] * (1.0 - LAST_STRIP)
     found[:, SIDE_MIDDLE], found[:, SIDE_REACH] = (

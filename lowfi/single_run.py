@@ -11,7 +11,7 @@ from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import Numerics, promises_of
 from tipoff.lowfi.preparation import prepare
-from tipoff.mechanics import comoving, ending, outcome, promises
+from tipoff.mechanics import comoving, ending, loads, outcome, promises
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import launch, scene_model
@@ -67,6 +67,7 @@ class SingleRun:
             np.zeros((first, SAMPLE_SIZE)),
             np.zeros((first, model.faces.axis.size, 3)),
         )
+        self.loads = loads.none(int(model.faces.guide.max(initial=-1)) + 1)
         self.last, self.taken, self.whole, self.message = self.end, 0, False, ""
 
     def begin(self) -> None:
@@ -110,6 +111,7 @@ class SingleRun:
             whole=self.whole,
             rows=self.rows,
             forces=self.forces,
+            loads=self.loads,
         )
         parts = self.system, self.plan, self.tolerance, self.marks, self.loop, self.cases
         return *parts, sampling
@@ -160,6 +162,7 @@ class SingleRun:
             message=message,
             **comoving.motion(seen_from, moved)._asdict(),
             pad_force=forces,
+            **loads.named(self.loads[0]),
             energy=total,
             transverse_energy=across,
             outcome=comoving.outcome(seen_from, result),

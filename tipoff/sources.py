@@ -42,7 +42,7 @@ READERS = (
             *("roles", "shown", "sinking", "suggestions", "thrust_plausibility", "unchanged"),
         )
     ),
-    *("tipoff.results.hand_over", "tipoff.results.shown"),
+    *("tipoff.results.guides", "tipoff.results.hand_over", "tipoff.results.shown"),
 )
 # A module that imports this function depends on all modules of its folder.
 _LISTS_A_FOLDER = "tipoff.formats.declared.declared"

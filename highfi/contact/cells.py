@@ -24,6 +24,7 @@ class Touch(NamedTuple):
     velocity: np.ndarray  # (n,3) m/s
     contact: np.ndarray  # (n,3) N
     face_force: np.ndarray  # (f,3) N
+    face_moment: np.ndarray  # (f,3) N m, about the payload's mass centre
     load: np.void  # LOAD of the group
     group: int
     surface: Surface
@@ -302,6 +303,7 @@ def _add_to_payload(touch, face, place, arm, normal, drag):
         load.moment[i] += moment[i]
         load.moment_on_rail[i] -= about_origin[i]
         touch.face_force[face, i] += total[i]
+        touch.face_moment[face, i] += moment[i]
 
 
 @inlined

@@ -70,7 +70,7 @@ FASTEST_SLIDE = 1000.0
 
 @inlined
 def contact_forces(constants, state, active, pose, team):
-    """Fill ``state.contact``, ``state.loads``, ``state.face_force`` and ``active``; called by every
+    """Fill ``state.contact``, ``state.loads``, ``state.face_force``, its moment and ``active``; called by every
     thread of ``team``."""
     if constants.interface_stiffness > 0.0:
         group = take(team)
@@ -88,6 +88,7 @@ def _forces_of_group(constants, state, active, pose, group):
         velocity=state.velocity,
         contact=state.contact,
         face_force=state.face_force,
+        face_moment=state.face_moment,
         load=state.loads[group],
         group=group,
         surface=surface,
@@ -133,7 +134,8 @@ def _forget(touch):
 def _forces_of_face(touch, friction, face):
     """Forces of one face, unless it is skipped."""
     active = touch.active
-    touch.face_force[face, 0], touch.face_force[face, 1], touch.face_force[face, 2] = 0.0, 0.0, 0.0
+    for i in range(3):
+        touch.face_force[face, i] = touch.face_moment[face, i] = 0.0
     if active.struck[face].depth > 0.0:
         active.struck[face].age += touch.dt
     elif active.wait[face] > 0:

@@ -32,6 +32,7 @@ from tipoff.highfi.contact.pads import collect_contact, contact_forces
 from tipoff.highfi.dynamics.damping import begin_damping, collect_damping
 from tipoff.highfi.dynamics.elastic import elastic_force, finish_load, hold_blocks, move_and_load
 from tipoff.highfi.dynamics.ending import begin, follow
+from tipoff.highfi.dynamics.guide_loads import begin_loads, follow_loads
 from tipoff.highfi.dynamics.hold_down import hold
 from tipoff.highfi.dynamics.loads import (
     accelerate,
@@ -82,6 +83,7 @@ def perform(constants, state, active, book, team, thread, task):
         _kick(constants, state, task)
     else:
         begin(constants, state, book)
+        begin_loads(constants, state)
     return 0, 0.0
 
 
@@ -241,6 +243,7 @@ def _advance(constants, state, active, book, team, thread, task):
             load_pushers(constants.pushers, frame, state, pose)
             thrust = thrust_load(constants, state, (n + task.stride) * unit)
             add_work(constants, state, active, pose, thrust, 0.0)
+            follow_loads(constants, state, (n + task.stride) * unit)
         taken += 1
     return taken, damping
 

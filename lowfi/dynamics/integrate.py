@@ -7,7 +7,7 @@ from tipoff.lowfi import pushers
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.stick_slip import clear
 from tipoff.lowfi.contact.wall_ends import DEPTH
-from tipoff.lowfi.dynamics import audit, ending, stick_slip
+from tipoff.lowfi.dynamics import audit, ending, guide_loads, stick_slip
 from tipoff.lowfi.dynamics.cases import BOOK, LEFT_OPEN, STEPS, system_of
 from tipoff.lowfi.dynamics.dormand_prince import interpolate
 from tipoff.lowfi.dynamics.local_error import with_reach
@@ -166,7 +166,7 @@ def _integrate(system, plan, tolerance, marks, loop, sampling):
     )
     for taken in range(counts.samples, sampling.number + 1):
         time = min(taken * sampling.interval, end)
-        status = _reach(system, plan, tolerance, marks, loop, sampling.whole, time)
+        status = _reach(system, plan, tolerance, marks, loop, sampling, time)
         if status == ENDED or (
             not sampling.whole and books.is_left_out(loop.book, time, sampling.interval)
         ):
@@ -184,19 +184,20 @@ def _integrate(system, plan, tolerance, marks, loop, sampling):
         counts.samples += 1
     if not ended:
         return SAMPLED
-    status = _reach(system, plan, tolerance, marks, loop, sampling.whole, end)
+    status = _reach(system, plan, tolerance, marks, loop, sampling, end)
     return ENDED if status == SAMPLED else status
 
 
 @kernel
-def _reach(system, plan, tolerance, marks, loop, whole, time):
+def _reach(system, plan, tolerance, marks, loop, sampling, time):
     """Step until ``time`` (s): SAMPLED, or the reason why it is not reached."""
     while loop.clock.now < time:
-        if not whole and books.is_over(loop.book, loop.clock.now):
+        if not sampling.whole and books.is_over(loop.book, loop.clock.now):
             return ENDED
         status = advance(system, plan, tolerance, marks, loop)
         if status != SAMPLED:
             return status
+        guide_loads.follow(system, loop, sampling.loads)
     return SAMPLED
 
 

@@ -172,13 +172,28 @@ def _observe_compliance(compliance, system, loop, body, base, forces):
         # Before the first step the touching faces are unknown, so every face may press.
         touching = loop.touching if loop.counts.steps > 0 else loop.engaged
         if touching.any():
-            workspace = compliance.workspace
-            _copy_rows(workspace.displacement, workspace.saved_displacement)
-            _copy_rows(workspace.lever, workspace.saved_lever)
+            keep_solution(compliance)
             energy = _observe_pressed(compliance, system, touching, loop.work, body, base, forces)
-            _copy_rows(workspace.saved_displacement, workspace.displacement)
-            _copy_rows(workspace.saved_lever, workspace.lever)
+            take_solution_back(compliance)
     return energy
+
+
+@kernel
+def keep_solution(compliance):
+    """Keep the solution of compliant contact, before another state is solved."""
+    if compliance is not None:
+        workspace = compliance.workspace
+        _copy_rows(workspace.displacement, workspace.saved_displacement)
+        _copy_rows(workspace.lever, workspace.saved_lever)
+
+
+@kernel
+def take_solution_back(compliance):
+    """Take the kept solution back."""
+    if compliance is not None:
+        workspace = compliance.workspace
+        _copy_rows(workspace.saved_displacement, workspace.displacement)
+        _copy_rows(workspace.saved_lever, workspace.lever)
 
 
 @kernel

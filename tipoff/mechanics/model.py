@@ -45,6 +45,7 @@ class Faces(NamedTuple):
     relief: np.ndarray  # (f,) m
     wall: np.ndarray  # (f,) m, coordinate of the undeformed wall along axis, in platform axes
     pad: np.ndarray  # (f,) index of its pad
+    guide: np.ndarray  # (f,) index of its guide: the pads of one button, or one pad
 
 
 class Plate(NamedTuple):

@@ -9,7 +9,7 @@ frame of the solution, which keeps the velocity of the platform's mass centre at
 
 import json
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -19,16 +19,24 @@ from tipoff import sources
 from tipoff.cards import Carded
 from tipoff.files import (
     DamageError,
-    Labelled,
-    labelled_netcdf,
     require_whole,
     write_csv,
     write_sealed,
 )
 from tipoff.mechanics import ledger, outcome
 from tipoff.mechanics.model_names import MODELS
-from tipoff.results import finite, hand_over, shown
+from tipoff.results import finite, guides, hand_over, shown
 from tipoff.results.completion import Completed
+from tipoff.results.contents import (
+    DIMENSIONS,
+    OPTIONAL,
+    PLAIN,
+    STRESS,
+    VECTOR,
+    attributes,
+    content,
+    variables,
+)
 from tipoff.results.model_error import ModelError
 
 if TYPE_CHECKING:
@@ -37,39 +45,8 @@ if TYPE_CHECKING:
     from tipoff.plots import Figure
 
 STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")
-_VECTOR = ("x", "y", "z")
-_DIMENSIONS = {
-    "position": ("time", "axis"),
-    "velocity": ("time", "axis"),
-    "quaternion": ("time", "component"),
-    "rate": ("time", "axis"),
-    "platform_position": ("time", "axis"),
-    "platform_velocity": ("time", "axis"),
-    "platform_quaternion": ("time", "component"),
-    "platform_rate": ("time", "axis"),
-    "pad_force": ("time", "face", "axis"),
-    "energy": ("time", "entry"),
-    "transverse_energy": ("time", "entry"),
-    "wall_stress": ("time", "patch", "stress_component"),
-}
-_PLAIN = ("checks", "cost", "scene", "numerics", "versions", "stress")
 _CHECKED = ("checks", "cost", "numerics", "stress")  # not the scene, which is finite
-_STRESS = ("xx", "yy", "zz", "xy", "yz", "zx")
 _PLOTTED = {"rate": ("deg/s", 180.0 / math.pi), "velocity": ("m/s", 1.0), "position": ("mm", 1e3)}
-_UNITS = {
-    "position": "m",
-    "velocity": "m/s",
-    "quaternion": "1",
-    "rate": "rad/s",
-    "platform_position": "m",
-    "platform_velocity": "m/s",
-    "platform_quaternion": "1",
-    "platform_rate": "rad/s",
-    "pad_force": "N",
-    "energy": "J",
-    "transverse_energy": "J",
-    "wall_stress": "Pa",
-}
 
 
 def versions() -> dict[str, str]:
@@ -136,6 +113,11 @@ class Trajectory(Carded, Completed):
     stress: dict | None = None
     #: (n,w,6) Pa, mean stress of the patches, in platform axes.
     wall_stress: np.ndarray | None = None
+    #: Largest load of each of g guides: (g,) s, (g,3) N, and its moment about the mass centre (g,3) N m,
+    #: in body axes. ``guides`` has them by name.
+    guide_time: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    guide_force: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    guide_moment: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     versions: dict[str, str] = field(default_factory=versions)
 
     def __post_init__(self):
@@ -144,15 +126,15 @@ class Trajectory(Carded, Completed):
         if self.model not in MODELS:
             raise ValueError(f"model {self.model!r}, expected one of {MODELS}")
         if self.wall_stress is None:
-            object.__setattr__(self, "wall_stress", np.zeros((np.size(self.time), 0, len(_STRESS))))
+            object.__setattr__(self, "wall_stress", np.zeros((np.size(self.time), 0, len(STRESS))))
         widths = {
-            "stress_component": len(_STRESS),
+            "stress_component": len(STRESS),
             "axis": 3,
             "component": 4,
             "entry": len(ledger.ENTRIES),
             "time": np.size(self.time),
         }
-        for name, dimensions in ({"time": ("time",)} | _DIMENSIONS).items():
+        for name, dimensions in ({"time": ("time",)} | DIMENSIONS).items():
             shape = np.shape(getattr(self, name))
             if len(shape) != len(dimensions) or any(
                 widths.get(d, n) != n for d, n in zip(dimensions, shape)
@@ -213,7 +195,7 @@ class Trajectory(Carded, Completed):
         return plots.lines(
             ("time after ignition (ms)", 1e3 * self.time),
             f"{quantity} ({unit})",
-            list(zip(_VECTOR, values.T)),
+            list(zip(VECTOR, values.T)),
             f"{self.scene.get('name', '')}, model {self.model}",
             axes,
         )
@@ -237,8 +219,26 @@ class Trajectory(Carded, Completed):
             ("rate", "deg/s", 180.0 / math.pi),
         ):
             values = factor * getattr(self, name)
-            columns |= {f"{name}_{axis} [{unit}]": values[:, i] for i, axis in enumerate(_VECTOR)}
+            columns |= {f"{name}_{axis} [{unit}]": values[:, i] for i, axis in enumerate(VECTOR)}
         write_csv(path, columns)
+
+    @property
+    def guides(self) -> tuple[guides.Guide, ...]:
+        """What each button, or each pad of a scene without buttons, does: when it leaves the rail, with
+        which speed and rates, and its largest force.
+
+        Raises:
+            SceneError: a trajectory that was read back, if its scene needs files that are gone.
+
+        Example:
+            >>> run = tipoff.run(tipoff.load("tiny"), "springs")
+            >>> last = max(run.guides, key=lambda guide: guide.leaves_s)
+            >>> last.name, abs(last.leaves_s - run.outcome.exit_time) < 1e-6
+            ('pad 1', True)
+        """
+        from tipoff.scenes.scene import parse
+
+        return guides.of(parse(self.scene, bare_numbers_are_si=True), self)
 
     def state_at_exit(self) -> hand_over.State:
         """State of the payload 0.1 ms after the exit, in the middle of the window at exit.
@@ -289,7 +289,7 @@ class Trajectory(Carded, Completed):
         """
         import xarray  # slow to load, and a run that writes no file does not need it
 
-        return xarray.Dataset(_variables(self), attrs=_attributes(self))
+        return xarray.Dataset(variables(self), attrs=attributes(self))
 
     def save(self, path: str | Path) -> None:
         """Write netCDF with its digest, atomically: an interrupted call leaves the earlier file, or
@@ -334,10 +334,10 @@ class Trajectory(Carded, Completed):
             with h5py.File(path) as data:
                 arrays: dict[str, Any] = {
                     name: data[name][()]
-                    for name in ("time", *_DIMENSIONS)
-                    if name in data or name != "wall_stress"
+                    for name in ("time", *DIMENSIONS)
+                    if name in data or name not in OPTIONAL
                 }
-                plain = {name: json.loads(data.attrs[name]) for name in _PLAIN}
+                plain = {name: json.loads(data.attrs[name]) for name in PLAIN}
                 finite.require_plain(plain)
                 result = outcome.Outcome(**json.loads(data.attrs["outcome"]))
                 return cls(
@@ -355,46 +355,3 @@ class Trajectory(Carded, Completed):
             ) from fault
         except Exception as error:  # the type from HDF5 depends on the foreign file
             raise OSError(f"{path}: not a whole trajectory file ({error})") from error
-
-
-def content(run: Trajectory) -> memoryview:
-    """The netCDF file of a run, without its digest; the same data as of ``to_xarray``."""
-    return labelled_netcdf(_variables(run), _attributes(run))
-
-
-def _variables(run: Trajectory) -> dict[str, Labelled]:
-    found: dict[str, Labelled] = {
-        name: (dims, getattr(run, name), {"units": _UNITS[name]})
-        for name, dims in _DIMENSIONS.items()
-    }
-    relative = outcome.relative_motion(run)
-    for name, unit in (
-        ("relative_position", "m"),
-        ("relative_velocity", "m/s"),
-        ("relative_rate", "rad/s"),
-    ):
-        found[name] = ("time", "axis"), relative[name], {"units": unit}
-    texts = {"axis": _VECTOR, "component": ("w", "x", "y", "z"), "entry": ledger.ENTRIES}
-    assert run.wall_stress is not None  # since __post_init__
-    if run.wall_stress.size:
-        texts["stress_component"] = _STRESS
-    else:
-        # netCDF takes a dimension of length zero as unlimited
-        del found["wall_stress"]
-    found["time"] = ("time",), run.time, {"units": "s"}
-    return found | {name: ((name,), list(labels), {}) for name, labels in texts.items()}
-
-
-def _attributes(run: Trajectory) -> dict[str, str]:
-    plain = {name: json.dumps(getattr(run, name), allow_nan=False) for name in _PLAIN}
-    return {
-        **({} if run.error is None else {"error": run.error.written()}),
-        "model": run.model,
-        "status": run.status,
-        "message": run.message,
-        "outcome": json.dumps(run.outcome._asdict()),
-        **plain,
-    }
-
-
-assert set(_DIMENSIONS) <= {item.name for item in fields(Trajectory)}

@@ -50,7 +50,7 @@ def _faults(pattern: dict) -> Iterator[tuple[str, str, str]]:
         yield "pads.stations", repr(stations), 'a list of places, for example ["-80 mm", "80 mm"]'
     if not isinstance(corner, list) or len(corner) != 2:
         yield "pads.corner", repr(corner), 'distances along Y and Z, such as ["100 mm", "100 mm"]'
-    for key in ("position", "normals"):
+    for key in ("position", "normals", "foot"):
         if key in pattern:
             yield f"pads.{key}", repr(pattern[key]), "no such key with stations and corner"
 

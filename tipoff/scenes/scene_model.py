@@ -10,7 +10,7 @@ from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.mechanics.laws.initial import Initial
 from tipoff.mechanics.laws.platform import Platform
 from tipoff.mechanics.model import Faces, Model, Payload, Plate
-from tipoff.scenes import launch
+from tipoff.scenes import guides, launch
 from tipoff.scenes.body import inverse, tensor
 from tipoff.scenes.effects import hold_down, registry, spring, thrust_offset
 from tipoff.scenes.rail import SectionTable
@@ -139,7 +139,7 @@ def _faces(scene: Scene, platform: Platform | None) -> Faces:
     origin = platform.mass_centre if platform else (0.0, 0.0, 0.0)
     gaps = scene.contact.gaps() if scene.contact else (0.0, 0.0, 0.0)
     gap = scene.rail.gap(gaps[0])
-    rows = []
+    rows, number = [], guides.numbers(scene.pads)
     for index, pad in enumerate(scene.pads):
         corner = np.array(pad.position)
         for normal in pad.normals:
@@ -163,4 +163,5 @@ def _faces(scene: Scene, platform: Platform | None) -> Faces:
         relief=np.array(columns[5]),
         wall=np.array(columns[6]),
         pad=np.array(columns[7], dtype=np.int64),
+        guide=np.array([number[pad] for pad in columns[7]], dtype=np.int64),
     )

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field, ValidationInfo, field_validator
 from tipoff.mechanics.run_limits import MOST_SAMPLES
 from tipoff.scenes.body import InertiaTensor
 from tipoff.scenes.rounding import ROUNDING, below
-from tipoff.scenes.table import Table, at_least_one, limited
+from tipoff.scenes.table import Table, at_least_one, is_absent, limited
 from tipoff.scenes.units import (
     Length,
     Mass,
@@ -79,6 +79,9 @@ class PadTable(Table):
     inset: NonNegativeLength = 0.0
     #: Crown: how far the edges of a face lie behind its middle.
     relief: NonNegativeLength = 0.0
+    #: Where the part that carries the face is fixed to the payload, from the nominal mass centre. Pads of
+    #: one foot are one button: its largest force is that of all of them, and has a moment about the foot.
+    foot: tuple[Length, Length, Length] | None = Field(None, exclude_if=is_absent)
 
     @field_validator("normals")
     @classmethod

@@ -132,6 +132,9 @@ def _places(made: Made) -> None:
                 own = item[key]
                 if key == "position" and isinstance(own, list) and own:
                     item[key] = [along(own[0]), *own[1:]]
+                    foot = item.get("foot")
+                    if isinstance(foot, list) and foot:
+                        item["foot"] = [along(foot[0]), *foot[1:]]
                 elif key == "place":
                     item[key] = along(own)
         if isinstance(items, list):

@@ -203,9 +203,11 @@ def pads(button: Button, place: tuple[float, float], slot: Slot, gap: float) -> 
         (head, inside - gap, "+z", 0.5 * button.head - half - 2.0 * EDGE),
         (across, 0.5 * (outside + inside), "y", slot.lip - 2.0 * EDGE),
     ]
+    foot = [text(button.place), text(y), text(outside + button.head_to_lip + button.flange_height)]
     return [
         {
             "position": [text(button.place), text(y + sign * aside), text(z)],
+            "foot": foot,
             "normals": [normal if normal[1:] else f"{'+' if sign > 0 else '-'}y"],
             "length": f"{button.length!r} m",
             "width": text(width),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from tipoff.mechanics import instant
+from tipoff.results.guides import Guide
 from tipoff.studies.render.column import Column
 
 Vector = tuple[float, float, float]  # along or about x, y, z
@@ -62,9 +63,9 @@ class ConditionRun:
     """One run. ``settled`` is None if it did not settle; ``at_exit`` is None for the reason
     ``no_exit_values``; ``impulse_after_exit`` is a share, None without exit or thrust; ``advice``
     is empty unless the run ended too early; ``by_hand`` is None if more than one pad touches;
-    ``rail_compliance``: its statement about its elements; ``trajectory``: the file in the folder of
-    the scene. Only the reference has the fields from ``elements`` on; stresses are None for a run
-    without stresses."""
+    ``guides``: its buttons, or pads; ``rail_compliance``: its statement about its elements;
+    ``trajectory``: the file in the folder of the scene. Only the reference has the fields from
+    ``elements`` on; stresses are None for a run without stresses."""
 
     condition: Annotated[str, Column("condition")]
     model: Annotated[str, Column("model")]
@@ -91,6 +92,7 @@ class ConditionRun:
     thrust: dict[str, Any] | None = None  # acting forces
     rail_compliance: dict[str, Any] | None = None
     by_hand: ByHand | None = None
+    guides: tuple[Guide, ...] = ()
     elements: int | None = None
     ns_per_element_step: float | None = None  # of all elements, those of rails at rest included
     ns_per_element_stepped: float | None = None  # None if all rails rest all the time

@@ -8,7 +8,7 @@ from typing import Any
 
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.mechanics.outcome import Outcome, no_exit_values
-from tipoff.results import hand_calculation, unfinished
+from tipoff.results import guides, hand_calculation, unfinished
 from tipoff.results.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
 from tipoff.studies.runs.results import AtExit, ByHand, ConditionRun, Runs, Settled, Vector
@@ -142,5 +142,6 @@ def _beside(request: Run, found: Trajectory) -> dict[str, Any]:
         "advice": unfinished.advice(request.scene, found),
         "thrust": request.scene.thrust.describe(request.scene.time_limit),
         "rail_compliance": request.compliance and request.compliance.stated(),
+        "guides": guides.of(request.scene, found),
         "by_hand": hand and ByHand(_vector(map(math.degrees, hand.rate)), hand.words),
     }

@@ -7,6 +7,7 @@ from enum import IntEnum
 
 from tipoff.mechanics import instant
 from tipoff.mechanics.estimates import stop
+from tipoff.results.guides import Guide
 from tipoff.results.model_error import ModelError
 from tipoff.scenes import launch
 from tipoff.scenes.scene import Scene
@@ -52,6 +53,7 @@ def lines(row: Single, made_with: str, study: Study, detail: Detail = Detail.ANS
     if row.exit_time_s is not None:
         text.append(f"  exit          {duration(row.exit_time_s, 4)} after ignition{_after(row)}")
     text += _answer(row, every)
+    text += _guides(row, every)
     text += _stress(row)
     if row.disturbed:
         limit = verdicts.gates(study.scene).settled_rate_error_deg_s
@@ -164,6 +166,35 @@ def _rates(row: Single, rate: Sequence[float], where: str) -> list[str]:
         f"{rounded(total, known)} in total{where}",
         f"  error         mostly by the {error.largest}, {part} deg/s; {_INPUTS}",
     ]
+
+
+def _guides(row: Single, every: bool) -> list[str]:
+    """A line for each button; for each pad only with ``every``."""
+    return [
+        f"  {guide.name:<14}{'; '.join(_of_guide(guide))}"
+        for guide in row.guides
+        if guide.name.startswith("button") or every
+    ]
+
+
+def _of_guide(guide: Guide) -> list[str]:
+    """When a guide leaves the rail, and its largest force."""
+    words = [f"x = {1e3 * guide.place_m[0]:.4g} mm"]
+    if guide.leaves_s is None or guide.speed_m_s is None or guide.rate_rad_s is None:
+        words.append("does not leave the rail")
+    else:
+        rates = ", ".join(uncertain(math.degrees(rate)) for rate in guide.rate_rad_s)
+        words.append(
+            f"leaves at {duration(guide.leaves_s, 4)}, {uncertain(guide.speed_m_s)} m/s, {rates} deg/s"
+        )
+    if guide.largest_force_n is None or guide.largest_force_time_s is None:
+        return [*words, "no force"]
+    force = (
+        f"largest force {guide.largest_force_n:.3g} N at {duration(guide.largest_force_time_s, 4)}"
+    )
+    if guide.moment_n_m is not None:
+        force += f", {math.hypot(*guide.moment_n_m):.3g} N m at its foot"
+    return [*words, force]
 
 
 def _by_hand(row: ConditionRun) -> list[str]:
