@@ -44,7 +44,7 @@ def estimate(wanted: Target, run: Trajectory) -> Offset:
     """The offset of the curves ``wanted`` from a run, at most the duration of the thrust in both
     directions."""
     (limit,) = thrust.burnouts(
-        ends.over_time(launch.of(wanted.scene)), (1e-3,), wanted.scene.time_limit
+        ends.over_time(launch.of_scene(wanted.scene)), (1e-3,), wanted.scene.time_limit
     )
     limit = float(min(limit, 0.5 * wanted.time[-1]))
 

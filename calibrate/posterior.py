@@ -27,7 +27,7 @@ class Posterior(NamedTuple):
     half_of_nuisances: np.ndarray  # (c,) with model error
 
 
-def of(
+def at_optimum(
     curves: Sequence[discrepancy.Curve],
     matrix: np.ndarray,
     shares: np.ndarray,

@@ -192,7 +192,7 @@ class _Asked:
 @lru_cache(maxsize=16)  # each call of the surrogate in a loop over scenes asks
 def _digest_of(asked: _Asked) -> str:
     scene = asked.scene
-    return content_hash(digest(scene), inputs.of(inputs.nominal(scene)).digest())
+    return content_hash(digest(scene), inputs.of_scene(inputs.nominal(scene)).digest())
 
 
 def direct(scene: Scene, element_size: float) -> np.ndarray:

@@ -139,7 +139,7 @@ def _of_compliant_contact(
     matrix = information.information(slopes[: vector.size])
     inner = matrix[: len(free), : len(free)]
     left = np.concatenate(objective.curves(residuals))
-    judged = posterior.of(
+    judged = posterior.at_optimum(
         refine.curves(objective, left, slopes[vector.size :, : len(free)]),
         inner,
         found.shares,

@@ -104,7 +104,7 @@ def condense(
     """
     scene = inputs.nominal(scene)
     stations = _stations(scene, spacing or spacing_of(scene))
-    own = inputs.of(scene)
+    own = inputs.of_scene(scene)
     held = held or rails(scene, element_size)
     count = of_degree.count(degree)
     placed = _placed(held, own.faces, own.reach, stations, count, DRAGGED)
@@ -154,7 +154,7 @@ def _by_nodes(scene: Scene, placed: "_Placed", modes: int) -> RailCompliance | N
         return None
     rail, patches, places = placed.under[0]
     inverses = _inverses(placed.gram, placed.part, of_degree.degree_of(placed.gram.shape[-1]))
-    found = nodal.of(rail, patches, places, inverses, placed.middle, modes)
+    found = nodal.under_patches(rail, patches, places, inverses, placed.middle, modes)
     if found is None:
         return None
     nodes, frequency = found
@@ -178,7 +178,7 @@ def spacing_of(scene: Scene) -> float:
 
 
 def _stations(scene: Scene, spacing: float) -> np.ndarray:
-    own = inputs.of(scene)
+    own = inputs.of_scene(scene)
     half, middle = own.faces.half_length, own.faces.centre[:, 0]
     first, last = -half.max(), (own.reach[1] + 2.0 * half - middle).max()
     return np.linspace(first, last, int(np.ceil((last - first) / spacing - 1e-9)) + 1)
@@ -189,7 +189,7 @@ def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
     Raises SceneError or MeshError."""
     if scene.rail.IS_STRAIGHT:
         return None
-    own = inputs.of(scene)
+    own = inputs.of_scene(scene)
     mesh = prepare(scene, Numerics(element_size=element_size))
     half = half_sizes(own.faces)[:, 1]
     return drawn_walls.offsets(mesh, own.faces, half, own.reach)
@@ -225,7 +225,7 @@ def rails(scene: Scene, element_size: float) -> list[HeldRail]:
 
 
 def _held(scene: Scene, element_size: float) -> list[HeldRail]:
-    own = inputs.of(scene)
+    own = inputs.of_scene(scene)
     mesh = prepare(scene, Numerics(element_size=element_size))
     return distinct(mesh, own.material, own.joint)
 
@@ -244,7 +244,7 @@ def along(
     Faces are those of ``mechanics.model.Faces``. Raises SceneError, MeshError, and ValueError for
     an unavailable number of patterns or modes.
     """
-    own, held = inputs.of(scene), _held(scene, element_size)
+    own, held = inputs.of_scene(scene), _held(scene, element_size)
     return of_rails(held, own.faces, own.reach, travel, patterns, modes, dragged)
 
 

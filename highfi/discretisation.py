@@ -84,7 +84,7 @@ def stated(
     SceneError or MeshError."""
     mesh = prepare(inputs.nominal(scene), Numerics(element_size=element_size))
     size = split.shortest(mesh) if isinstance(scene.rail, MeshTable) else element_size
-    known = of(scene, element_size, rails)
+    known = of_scene(scene, element_size, rails)
     return replace(
         found,
         element_size=size,
@@ -94,11 +94,13 @@ def stated(
     )
 
 
-def of(scene: Scene, element_size: float, rails: Sequence[HeldRail] | None = None) -> Uncertainty:
+def of_scene(
+    scene: Scene, element_size: float, rails: Sequence[HeldRail] | None = None
+) -> Uncertainty:
     """Uncertainty of ``compliance.condense`` in elements of ``element_size`` (m), with the same
     ``rails``. Raises SceneError or MeshError."""
     scene = inputs.nominal(scene)
-    own = inputs.of(scene)
+    own = inputs.of_scene(scene)
     way = own.reach[1] - own.faces.half_length - own.faces.centre[:, 0]
     travel = np.linspace(0.0, way.max(), _PLACES)
     return of_rails(rails or compliance.rails(scene, element_size), own.faces, own.reach, travel)

@@ -118,11 +118,11 @@ class Numerics:
         return replace(made, cells=_FEW_CELLS, degree=LOW_DEGREE)
 
     def tightened(self) -> "Numerics":
-        """The same with a tenth of the tolerance, or the finest tolerance."""
+        """These numerics with a tenth of the tolerance, or with the finest tolerance."""
         return replace(self, relative_tolerance=max(0.1 * self.relative_tolerance, _FINEST))
 
     def accurate(self) -> "Numerics":
-        """The same at the default tolerance, or at its own if that is tighter."""
+        """These numerics at the default tolerance, or at their own if that is tighter."""
         tolerance = min(self.relative_tolerance, _TOLERANCE)
         return replace(self, relative_tolerance=tolerance)
 

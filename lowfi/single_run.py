@@ -57,7 +57,7 @@ class SingleRun:
         self.end = scene.output.last(scene.time_limit)
         self.expected = scene.output.last(scene.expected_end)
         self.marks: outcome.Milestones = (
-            like.marks if like else outcome.milestones(launch.of(scene), scene.time_limit)
+            like.marks if like else outcome.milestones(launch.of_scene(scene), scene.time_limit)
         )
         self.system, self.plan, self.tolerance, _, self.loop, self.cases = prepare(
             scene, [model], self.marks, self.used, self.promised, compliance, watches

@@ -72,7 +72,7 @@ def set_up(
         stepping=stepping,
         rails=rails,
         exit=ending.place(system),
-        milestones=outcome.milestones(launch.of(scene), scene.time_limit),
+        milestones=outcome.milestones(launch.of_scene(scene), scene.time_limit),
         monitor=monitor.build(system, scene.rail.material, stepping.steps_per_sample, threads),
         team=team_of(threads),
         alone=team_of(1),

@@ -41,7 +41,7 @@ def nominal(scene: Scene) -> Scene:
     return scene.replace({"rail.mount_stiffness.factor": 1.0})
 
 
-def of(scene: Scene) -> Inputs:
+def of_scene(scene: Scene) -> Inputs:
     """The record of ``scene``. Raises SceneError if pads do not fit the built-in section or nothing
     holds it."""
     faces = scene_model.built(scene).nominal

@@ -12,7 +12,7 @@ from tipoff.mechanics.rail_compliance.nodal import Nodal, spanned
 LEAST_BYTES = 1e7  # of the table between faces; a smaller one is stored as it is
 
 
-def of(
+def under_patches(
     held: HeldRail,
     patches: Patches,
     places: list[np.ndarray],

@@ -48,7 +48,9 @@ def expected_rate(scene: Scene) -> float:
     if model.pushers is not None:
         pushes = model.pushers
         turning = np.cross(pushes.point + centre, pushes.direction)
-        kick = model.platform.inverse_inertia @ (ends.spring_impulses(launch.of(scene)) @ turning)
+        kick = model.platform.inverse_inertia @ (
+            ends.spring_impulses(launch.of_scene(scene)) @ turning
+        )
         return rate + float(np.linalg.norm(kick))
     offset = model.thrust_offset
     place = np.array([-model.thrust_arm, 0.0, 0.0]) if offset is None else np.array(offset.arm)

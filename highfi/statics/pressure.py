@@ -46,7 +46,7 @@ class Wall:
         self._order = np.argsort(self._control[:, :, 0].min(axis=1), kind="stable")
         self._starts = self._control[self._order, :, 0].min(axis=1)
         self._longest = np.ptp(self._control[:, :, 0], axis=1).max()
-        self._grid = wall_grid.of(facets, self._plane)
+        self._grid = wall_grid.from_facets(facets, self._plane)
         self._across: dict[tuple[float, ...], wall_grid.Axis] = {}  # the same at every X
 
     def pressed(self, middle: np.ndarray, half: np.ndarray, patterns: int) -> Pressed | None:

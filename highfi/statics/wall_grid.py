@@ -45,7 +45,7 @@ class Grid(NamedTuple):
         ]
 
 
-def of(facets: np.ndarray, plane: np.ndarray) -> Grid | None:
+def from_facets(facets: np.ndarray, plane: np.ndarray) -> Grid | None:
     """The grid of ``facets`` (m,k) with nodes ``plane`` (m,k,2) m; None if they are not the rectangles
     of one, each once."""
     if facets.shape[1] != 4:

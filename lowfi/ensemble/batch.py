@@ -77,7 +77,7 @@ class Family:
         self.stated = Variations(scene) if self.changes else None
         self.base = scene_model.built(calibrated)
         self.base_parts = _parts(self.base)
-        self.burnouts = outcome.burnouts(launch.of(calibrated), calibrated.time_limit)
+        self.burnouts = outcome.burnouts(launch.of_scene(calibrated), calibrated.time_limit)
 
     def jobs(
         self, table: Sequence[Mapping[str, Any]]
@@ -165,7 +165,7 @@ class Family:
         scene, base = built.scene, self.base.scene
         same = scene.thrust is base.thrust and scene.time_limit == base.time_limit
         return outcome.milestones(
-            launch.of(scene), scene.time_limit, self.burnouts if same else None
+            launch.of_scene(scene), scene.time_limit, self.burnouts if same else None
         )
 
     def _shared(self, built: Built) -> tuple:

@@ -160,7 +160,7 @@ def run_rows(recipe: Recipe, rows: _Rows) -> tuple[Columns, list[str]]:
     family = _family(recipe)
     pieces = (rows[begin : begin + PIECE] for begin in range(0, len(rows), PIECE))
     cases = [case for piece in pieces for case in in_order(job() for job in family.jobs(piece))]
-    return columns.of(cases), [case.message for case in cases]
+    return columns.of_cases(cases), [case.message for case in cases]
 
 
 def _family(recipe: Recipe) -> Family:

@@ -56,7 +56,7 @@ class Columns(NamedTuple):
     steps: np.ndarray  # (n,)
 
 
-def of(cases: Sequence[Case]) -> Columns:
+def of_cases(cases: Sequence[Case]) -> Columns:
     """Columns of ``cases``."""
 
     def settled(name: str) -> np.ndarray:

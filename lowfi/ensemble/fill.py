@@ -68,7 +68,7 @@ def _here(
         cases += found
         if len(cases) == len(begun[0][1]):
             number, rows = begun.popleft()
-            yield Chunk(number, rows, columns.of(cases), [case.message for case in cases])
+            yield Chunk(number, rows, columns.of_cases(cases), [case.message for case in cases])
             cases = []
         else:
             tell(len(cases))

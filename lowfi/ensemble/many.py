@@ -118,13 +118,13 @@ def _found(ensemble: Ensemble, chosen: Execution) -> "xarray.Dataset":
     if chosen.store is not None:
         return _stored(ensemble, chosen, chosen.store)
     cases = _cases(ensemble, chosen)
-    found = _dataset(columns.of(cases), [case.message for case in cases])
+    found = _dataset(columns.of_cases(cases), [case.message for case in cases])
     found["wall_s"] = "case", _shares(cases), {"units": "s"}
     if chosen.sensitivity:
         spent = np.zeros(len(cases))
-        for cause, twin in twins.of(ensemble).items():
+        for cause, twin in twins.of_ensemble(ensemble).items():
             disturbed = _cases(twin, chosen)
-            _add_change(found, cause, twin, columns.of(disturbed).rate)
+            _add_change(found, cause, twin, columns.of_cases(disturbed).rate)
             spent += _shares(disturbed)
         found["sensitivity_wall_s"] = "case", spent, {"units": "s"}
     return found
@@ -148,7 +148,7 @@ def _stored(ensemble: Ensemble, chosen: Execution, path: str | Path) -> "xarray.
     fill(ensemble, store, chosen.workers)
     found = _dataset(*store.results())
     if chosen.sensitivity:
-        for cause, twin in twins.of(ensemble).items():
+        for cause, twin in twins.of_ensemble(ensemble).items():
             disturbed = twins.opened(twin, cause, store)
             fill(twin, disturbed, chosen.workers)
             twins.add(store, cause, twin, disturbed)

@@ -25,7 +25,7 @@ CLEARANCE_CHANGE = 1e-6  # m
 TOLERANCE = 1e-10  # relative, of a step
 
 
-def of(ensemble: Ensemble) -> dict[str, Ensemble]:
+def of_ensemble(ensemble: Ensemble) -> dict[str, Ensemble]:
     """The twins of ``ensemble`` by the cause of the difference."""
     return {
         "clearance": ensemble._replace(widening=CLEARANCE_CHANGE),

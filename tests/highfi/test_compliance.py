@@ -203,7 +203,7 @@ def test_a_grid_of_facets_has_the_loads_of_its_facets(half):
     middle, half = np.array([0.3071, 0.0143]), np.array(half)
     wall = pressure.Wall(mesh.points, facets, 1)
     plane = mesh.points[facets][:, :, :2]
-    grid = wall_grid.of(facets, plane)
+    grid = wall_grid.from_facets(facets, plane)
     assert [line.size for line in grid.lines] == [41, 6]
     found, alone = wall.pressed(middle, half, 21), wall.facet_by_facet(middle, half, 21)
     assert np.array_equal(found.gram, found.gram.T) and found.gram.shape == (21, 21)
@@ -218,9 +218,9 @@ def test_a_grid_of_facets_has_the_loads_of_its_facets(half):
     apart = facets.copy()
     apart[50, 0] += 1  # another node at one corner
     for other, at in ((facets, moved), (facets[1:], plane[1:]), (apart, plane)):
-        assert wall_grid.of(other, at) is None
+        assert wall_grid.from_facets(other, at) is None
     twice = np.concatenate([facets[1:], facets[1:2]])
-    assert wall_grid.of(twice, mesh.points[twice][:, :, :2]) is None
+    assert wall_grid.from_facets(twice, mesh.points[twice][:, :, :2]) is None
 
 
 @pytest.fixture(scope="module")

@@ -152,8 +152,8 @@ def test_a_mesh_that_is_too_large_has_no_uncertainty(monkeypatch):
 def test_a_compliance_states_its_elements(monkeypatch):
     """Those of a file are its own, whatever size is asked for. Control: a compliance made elsewhere
     states nothing."""
-    known = discretisation.of(load("tiny"), 16e-3)
-    monkeypatch.setattr(discretisation, "of", lambda *_: known)
+    known = discretisation.of_scene(load("tiny"), 16e-3)
+    monkeypatch.setattr(discretisation, "of_scene", lambda *_: known)
     for scene, asked, own in ((load("tiny"), 16e-3, 16e-3), (load("channel"), 9e-3, 4e-3)):
         plain = compliance.condense(scene, asked, spacing=0.15, modes=2)
         found = discretisation.stated(scene, asked, plain)

@@ -35,7 +35,7 @@ def test_one_solution_gives_it(condensed):
     """Traction along X in the patterns of a face, solved once with another factor: the mean of the
     displacement of each wall of the rail."""
     scene, station = tiny(), 5
-    own, rail = inputs.of(scene), compliance.rails(scene, SIZE)[0]
+    own, rail = inputs.of_scene(scene), compliance.rails(scene, SIZE)[0]
     found = compliance.along(scene, SIZE, condensed.travel[station : station + 1], dragged=3)
     patches = Patches(rail.rail, 1, 1)
     half = condensed.half

@@ -191,7 +191,7 @@ def test_relative_motion_with_a_turning_platform():
 
 def test_milestones_of_the_reference():
     scene = load("reference")
-    found = outcome.milestones(launch.of(scene), scene.time_limit)
+    found = outcome.milestones(launch.of_scene(scene), scene.time_limit)
     assert found.settled_thrust == pytest.approx(
         0.012 + 0.004 * math.sqrt(2.0 * math.log(1e3)), abs=5e-6
     )
@@ -219,7 +219,7 @@ def test_a_body_force_has_time_to_set_a_payload_in_motion_before_it_counts_as_ja
 
     def spent(**changes) -> float:
         scene = resting.replace(changes)
-        return outcome.milestones(launch.of(scene), scene.time_limit).spent_thrust
+        return outcome.milestones(launch.of_scene(scene), scene.time_limit).spent_thrust
 
     assert spent(gravity={"x": pull}) == pytest.approx(2.0 * 0.01 / pull, rel=1e-9)
     # Control:

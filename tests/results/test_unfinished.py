@@ -50,7 +50,7 @@ def test_a_payload_on_the_rail_has_its_way_and_a_duration_that_is_enough(scene):
     early = scene.replace({"duration": 0.9 * exit_time})
     text = told(early)
     assert text.startswith("still on the rail: ")
-    assert f"of {1e3 * launch.of(scene).way:.3g} mm" in text
+    assert f"of {1e3 * launch.of_scene(scene).way:.3g} mm" in text
     assert lowfi.run(scene.replace({"duration": stated(text)})).status == "exited"
 
 
@@ -61,7 +61,7 @@ def test_the_way_is_the_one_that_a_run_has_made_at_its_exit(scene):
     place = relative_motion(run)["relative_position"][:, 0]
     at_exit = place[abs(run.time - run.outcome.exit_time).argmin()]
     speed = run.outcome.velocity[0]
-    assert at_exit - place[0] == pytest.approx(launch.of(fine).way, abs=2e-6 * speed)
+    assert at_exit - place[0] == pytest.approx(launch.of_scene(fine).way, abs=2e-6 * speed)
 
 
 def test_thrust_without_an_end_and_a_payload_that_hardly_moves(scene):

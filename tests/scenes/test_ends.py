@@ -27,7 +27,7 @@ def test_a_stated_duration_is_the_limit_and_keeps_the_hash():
 def test_a_payload_at_the_jam_speed_leaves_within_the_limit(mass):
     """After the thrust it needs way / 10 mm/s; variations that are slower share the limit."""
     scene = TINY.replace({"payload.mass": mass})
-    slowest = 4.5e-3 + launch.of(scene).way / 0.01
+    slowest = 4.5e-3 + launch.of_scene(scene).way / 0.01
     assert slowest < scene.time_limit < 2.0 * slowest + 0.1
     assert scene.time_limit == TINY.time_limit == 32.768
 
@@ -35,7 +35,7 @@ def test_a_payload_at_the_jam_speed_leaves_within_the_limit(mass):
 def test_the_limit_follows_what_varies():
     late = TINY.replace({"thrust.centre": 40.0})
     assert (
-        40.0 + launch.of(late).way / 0.01 < late.time_limit <= 64.0 + 36.0
+        40.0 + launch.of_scene(late).way / 0.01 < late.time_limit <= 64.0 + 36.0
     )  # 1e6 samples of 0.1 ms
     assert (
         TINY.replace({"friction.static_speed": 0.3, "friction.dynamic_speed": 0.6}).time_limit < 2
@@ -57,7 +57,7 @@ def test_the_expected_end_is_that_of_the_pulse_alone():
     # the pulse begins three widths before its peak
     impulse = 100.0 * 0.004 * math.sqrt(math.pi / 2.0) * (1.0 + math.erf(3.0 / math.sqrt(2.0)))
     cut = 100.0 * 0.004**2 * math.exp(-4.5)  # its mean instant is later than the peak
-    coasting = launch.of(scene).way / (impulse / 10.0) + cut / impulse
+    coasting = launch.of_scene(scene).way / (impulse / 10.0) + cut / impulse
     assert scene.expected_end == pytest.approx(1.25 * (coasting + 0.012 + 0.003), rel=1e-5)
 
 
@@ -69,10 +69,10 @@ def test_the_expected_end_is_that_of_the_curve_alone(tmp_path):
     scene = ALONE.replace({"thrust": {"kind": "measured", "file": str(path)}})
     speed = 100.0 * 0.02 / 10.0
     way = 0.5 * speed * 0.02 + speed * 0.01 - 0.5 * 5.0 * 0.01**2
-    exits = 0.03 + (launch.of(scene).way - way) / (speed - 5.0 * 0.01)
+    exits = 0.03 + (launch.of_scene(scene).way - way) / (speed - 5.0 * 0.01)
     assert scene.expected_end == pytest.approx(1.25 * (exits + 0.003), rel=1e-6)
     # from 1 mm before the end it leaves before it is pulled back: the thrust ends last
-    begun = scene.replace({"initial.position.x": launch.of(scene).way - 1e-3})
+    begun = scene.replace({"initial.position.x": launch.of_scene(scene).way - 1e-3})
     assert begun.expected_end == pytest.approx(1.25 * (0.03 + 0.002), rel=1e-6)
 
 
@@ -80,12 +80,12 @@ def test_the_expected_end_is_that_of_the_curve_alone(tmp_path):
 def test_a_duration_that_is_too_short_without_friction_is_foreseen(share, refused):
     """The exit under a constant push, x = F t^2 / 2 m, on both sides."""
     scene = ALONE.replace({"thrust": PUSH | {"force": 2000.0, "duration": 0.04}})
-    exits = math.sqrt(2.0 * launch.of(scene).way * 10.0 / 2000.0)
+    exits = math.sqrt(2.0 * launch.of_scene(scene).way * 10.0 / 2000.0)
     assert exits + 1e-3 > 0.04  # it leaves after the thrust, or nearly
     needed = exits + 3e-3 if exits <= 0.04 else None
     if needed is None:
         at_end = 2000.0 * 0.04**2 / 20.0
-        needed = 0.04 + (launch.of(scene).way - at_end) / (2000.0 * 0.04 / 10.0) + 3e-3
+        needed = 0.04 + (launch.of_scene(scene).way - at_end) / (2000.0 * 0.04 / 10.0) + 3e-3
     stated = scene.replace({"duration": share * needed})
     words = unfinished.foreseen(stated)
     assert bool(words) == refused
@@ -137,7 +137,7 @@ def test_a_thrust_that_outlasts_every_run_is_refused(interval, refused):
 )
 def test_the_speed_below_which_a_payload_is_jammed(change, speed):
     """Friction of 0.2 holds a payload on a slope of less than atan(0.2)."""
-    assert ends.jam_speed(launch.of(load("tiny").replace(change))) == pytest.approx(
+    assert ends.jam_speed(launch.of_scene(load("tiny").replace(change))) == pytest.approx(
         speed, rel=1e-12
     )
 

@@ -122,10 +122,10 @@ def test_every_value_of_a_flight_is_in_the_scene_with_its_field(way):
         "thrust": "motor.thrust",
         "hand_over.heading": "heading",
     }.items():
-        text = provenance.of(scene.provenance, key)
+        text = provenance.nearest(scene.provenance, key)
         assert text.startswith("RocketPy: ") and field in text
     for key in ("rail.mounts", "contact.stiffness", "friction", "buttons.0.profile", "pads"):
-        assert provenance.of(scene.provenance, key).startswith(("assumed", "from")), key
+        assert provenance.nearest(scene.provenance, key).startswith(("assumed", "from")), key
 
 
 def test_the_scene_is_a_file_too():

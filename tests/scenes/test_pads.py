@@ -41,9 +41,9 @@ def test_provenance_of_a_key_is_that_of_each_pad():
     texts = {"pads": "assumed", "pads.relief": "drawing", "pads.stations": "CAD"}
     found = with_pads(PATTERN, provenance=texts).provenance
     for pad in range(8):
-        assert provenance.of(found, f"pads.{pad}.relief") == "drawing"
-        assert provenance.of(found, f"pads.{pad}.position") == "CAD"
-        assert provenance.of(found, f"pads.{pad}.length") == "assumed"
+        assert provenance.nearest(found, f"pads.{pad}.relief") == "drawing"
+        assert provenance.nearest(found, f"pads.{pad}.position") == "CAD"
+        assert provenance.nearest(found, f"pads.{pad}.length") == "assumed"
 
 
 def test_a_file_changes_one_key_of_an_inherited_pattern(tmp_path):
@@ -52,8 +52,8 @@ def test_a_file_changes_one_key_of_an_inherited_pattern(tmp_path):
     found, base = load(path), load("reference")
     assert [pad.relief for pad in found.pads] == 8 * [9e-6]
     assert [pad.position for pad in found.pads] == [pad.position for pad in base.pads]
-    assert provenance.of(found.provenance, "pads.3.relief") == "user"
-    assert provenance.of(found.provenance, "pads.3.length") == "assumed"
+    assert provenance.nearest(found.provenance, "pads.3.relief") == "user"
+    assert provenance.nearest(found.provenance, "pads.3.length") == "assumed"
 
 
 @pytest.mark.parametrize(

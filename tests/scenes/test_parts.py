@@ -81,8 +81,8 @@ def test_a_body_of_few_numbers_is_a_slender_cylinder_and_says_so():
     assert inertia.xx == pytest.approx(0.5 * 24.0 * 0.076**2, rel=1e-12)
     assert inertia.yy == pytest.approx(24.0 * (3 * 0.076**2 + 3.7**2) / 12.0, rel=1e-12)
     for key in ("payload.inertia.yy", "pads.3.width", "contact.stiffness", "rail.material.density"):
-        assert provenance.of(scene.provenance, key).startswith("assumed"), key
-    assert provenance.of(scene.provenance, "payload.mass") is None
+        assert provenance.nearest(scene.provenance, key).startswith("assumed"), key
+    assert provenance.nearest(scene.provenance, "payload.mass") is None
 
 
 @pytest.mark.parametrize(

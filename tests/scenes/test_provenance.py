@@ -5,7 +5,7 @@ import pytest
 
 from tests.scenes.support import small
 from tipoff.scenes import SceneError, catalog, load, parse
-from tipoff.scenes.provenance import of
+from tipoff.scenes.provenance import nearest
 from tipoff.studies.render import document
 from tipoff.studies.report import inputs
 
@@ -23,7 +23,7 @@ def read(tmp_path):
 
 
 def changed(scene, *keys):
-    return [of(scene.provenance, key) for key in keys]
+    return [nearest(scene.provenance, key) for key in keys]
 
 
 def test_an_overridden_key_is_the_users_and_others_keep_their_origin():
@@ -43,14 +43,14 @@ def test_a_table_keeps_its_text_and_names_the_part_of_the_user():
         BOX,
         BOX,
     ]
-    assert of(found.provenance, "payload.inertia") == f"{BOX}, in part user"
+    assert nearest(found.provenance, "payload.inertia") == f"{BOX}, in part user"
     twice = found.replace({"payload.inertia.yy": 0.14})
     assert changed(twice, "payload.inertia.xx", "payload.inertia.yy", "payload.inertia.xz") == [
         "user",
         "user",
         BOX,
     ]
-    assert of(twice.provenance, "payload.inertia") == f"{BOX}, in part user"
+    assert nearest(twice.provenance, "payload.inertia") == f"{BOX}, in part user"
 
 
 def test_an_entry_of_a_list_and_the_table_around_a_table():
@@ -67,7 +67,7 @@ def test_an_entry_of_a_list_and_the_table_around_a_table():
         "paper",
         "assumed",
     ]
-    assert of(found.provenance, "pads") == "assumed, in part user"
+    assert nearest(found.provenance, "pads") == "assumed, in part user"
     assert "8 pads (assumed, in part user)" in document.markdown(inputs.scene_tables(found))
 
 
@@ -83,7 +83,7 @@ def test_given_provenance_is_kept():
     found = load("reference").replace(
         {"payload.mass": "12 kg", "provenance.payload.mass": "measured"}
     )
-    assert of(found.provenance, "payload.mass") == "measured"
+    assert nearest(found.provenance, "payload.mass") == "measured"
     table = load("reference").replace(
         {"payload.mass": "12 kg", "provenance": {"payload": {"mass": "weighed"}}}
     )
@@ -138,7 +138,7 @@ def test_a_chain_of_files_and_a_table_of_another_kind(read):
 
 def test_a_condition():
     scene = load("reference")
-    assert of(scene.provenance, "thrust_offset.misalignment.radial") == "paper, Table 1"
+    assert nearest(scene.provenance, "thrust_offset.misalignment.radial") == "paper, Table 1"
     found = scene.condition("phi35")
     assert changed(
         found, "thrust_offset.misalignment.radial", "thrust_offset.misalignment.axial"

@@ -33,9 +33,9 @@ def test_a_ramp_lifts_the_payload_at_its_weight(tmp_path, tilt):
     scene = curve(tmp_path, (0, 0), (20, 0), (30, 1000), (500, 1000))
     scene = scene.replace({"thrust_offset.misalignment.axial": tilt})
     exact = 0.02 + 0.01 * MASS * G / (1000.0 * math.cos(tilt))
-    assert stop.is_there(launch.of(scene)) and stop.release_time(launch.of(scene)) == pytest.approx(
-        exact, rel=1e-12
-    )
+    assert stop.is_there(launch.of_scene(scene)) and stop.release_time(
+        launch.of_scene(scene)
+    ) == pytest.approx(exact, rel=1e-12)
 
 
 @pytest.mark.parametrize("force, leaves", [(600.0, False), (4000.0, True)])
@@ -47,24 +47,26 @@ def test_the_spike_of_an_igniter_is_a_hop(tmp_path, force, leaves):
     speed = (force / MASS - G) * 5e-4
     assert (0.25e-3 * speed + speed**2 / (2.0 * G) > stop.HOP) == leaves
     exact = 2e-3 if leaves else 0.1 + 1e-3 * MASS * G / 1000.0
-    assert stop.release_time(launch.of(scene)) == pytest.approx(exact, rel=1e-9)
+    assert stop.release_time(launch.of_scene(scene)) == pytest.approx(exact, rel=1e-9)
 
 
 def test_a_pulse_lifts_the_payload_at_its_weight():
     pulse = UPRIGHT.thrust
     exact = pulse.centre - pulse.width * math.sqrt(2.0 * math.log(pulse.peak / (MASS * G)))
-    assert stop.release_time(launch.of(UPRIGHT)) == pytest.approx(max(exact, 0.0), rel=1e-9)
+    assert stop.release_time(launch.of_scene(UPRIGHT)) == pytest.approx(max(exact, 0.0), rel=1e-9)
     heavy = UPRIGHT.replace({"gravity.x": -100.0 * G})
     later = pulse.centre - pulse.width * math.sqrt(2.0 * math.log(pulse.peak / (100.0 * MASS * G)))
-    assert later > 0.0 and stop.release_time(launch.of(heavy)) == pytest.approx(later, rel=1e-9)
+    assert later > 0.0 and stop.release_time(launch.of_scene(heavy)) == pytest.approx(
+        later, rel=1e-9
+    )
     weak = UPRIGHT.replace({"thrust.peak": 90.0})
-    assert stop.release_time(launch.of(weak)) == math.inf
+    assert stop.release_time(launch.of_scene(weak)) == math.inf
 
 
 @pytest.mark.parametrize("preload, released", [(97.0, math.inf), (99.0, 0.0)])
 def test_springs_lift_the_payload_at_ignition_or_never(preload, released):
     spring = {"kind": "spring", "preload": preload, "rate": 100.0, "stroke": 0.01}
-    assert stop.release_time(launch.of(UPRIGHT.replace({"thrust": spring}))) == released
+    assert stop.release_time(launch.of_scene(UPRIGHT.replace({"thrust": spring}))) == released
 
 
 def test_a_latch_below_the_weight_leaves_the_payload_to_its_stop(tmp_path):
@@ -73,7 +75,9 @@ def test_a_latch_below_the_weight_leaves_the_payload_to_its_stop(tmp_path):
     for release, held in ((50.0, MASS * G), (400.0, 400.0)):
         latched = scene.replace({"hold_down.release": release})
         assert hold_down.release_time(latched) == pytest.approx(0.02 + 1e-5 * release, rel=1e-12)
-        assert stop.release_time(launch.of(latched)) == pytest.approx(0.02 + 1e-5 * held, rel=1e-12)
+        assert stop.release_time(launch.of_scene(latched)) == pytest.approx(
+            0.02 + 1e-5 * held, rel=1e-12
+        )
         assert scene_model.build(latched).hold_down.is_stop == (held > release)
     assert scene_model.build(scene.replace({"hold_down.release": 0.0})).hold_down is None
 
@@ -91,5 +95,5 @@ def test_a_latch_below_the_weight_leaves_the_payload_to_its_stop(tmp_path):
 )
 def test_scenes_without_a_stop(change):
     scene = UPRIGHT.replace({"thrust.peak": 1.0} | change)
-    assert not stop.is_there(launch.of(scene)) and scene_model.build(scene).hold_down is None
-    assert stop.is_there(launch.of(UPRIGHT))
+    assert not stop.is_there(launch.of_scene(scene)) and scene_model.build(scene).hold_down is None
+    assert stop.is_there(launch.of_scene(UPRIGHT))

@@ -19,7 +19,7 @@ def moved(condition: str, change: float = 1e-6) -> tuple[disturbed.Disturbed, Tr
     scene = REFERENCE.condition(condition)
     run = Run("lowfi", condition, scene, lowfi.Numerics())
     nominal = lowfi.run(scene, "springs")
-    return disturbed.of(run, nominal, change), nominal
+    return disturbed.measured(run, nominal, change), nominal
 
 
 def test_changes_are_those_of_runs_made_by_hand():
@@ -40,12 +40,12 @@ def test_changes_are_those_of_runs_made_by_hand():
 
 def test_a_negative_clearance_is_left_out_and_free_flight_has_none():
     scene = REFERENCE.condition("phi60").replace({"contact.clearance": 0.0})
-    found = disturbed.of(
+    found = disturbed.measured(
         Run("lowfi", "phi60", scene, lowfi.Numerics()), lowfi.run(scene, "springs"), 1e-6
     )
     assert found.by_clearance_deg_s > 0.0
     free = REFERENCE.replace({"contact": None, "friction": None})
-    found = disturbed.of(Run("lowfi", "free", free, lowfi.Numerics()), lowfi.run(free), 1e-6)
+    found = disturbed.measured(Run("lowfi", "free", free, lowfi.Numerics()), lowfi.run(free), 1e-6)
     assert found.clearance_change_m is None and found.by_tolerance_deg_s < 1e-6
 
 
@@ -55,7 +55,7 @@ def test_clearances_along_the_axes_are_disturbed_too():
     axes = {f"contact.clearance_{axis}": REFERENCE.contact.clearance for axis in "yz"}
     scene = REFERENCE.condition("phi60").replace(axes)
     nominal = lowfi.run(scene, "springs")
-    found = disturbed.of(Run("lowfi", "phi60", scene, lowfi.Numerics()), nominal, 1e-6)
+    found = disturbed.measured(Run("lowfi", "phi60", scene, lowfi.Numerics()), nominal, 1e-6)
     expected = moved("phi60")[0].by_clearance_deg_s
     assert found.by_clearance_deg_s == pytest.approx(expected, rel=0.05)
 

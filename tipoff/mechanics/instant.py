@@ -59,7 +59,7 @@ def velocity(found: Outcome, at: str) -> list[float] | None:
     return found.exit_velocity if at == EXIT else found.velocity
 
 
-def of(found: Outcome) -> str:
+def of_outcome(found: Outcome) -> str:
     """The instant that counts for one run: ``EXIT`` or ``SETTLED``. A run without values at its exit
     counts as settled, and so does one that has settled values alone."""
     at = chosen(None, found.impulse_after_exit).at
@@ -69,7 +69,7 @@ def of(found: Outcome) -> str:
 def change(found: Outcome, other: Outcome) -> float | None:
     """Largest change of a rate (deg/s) from ``found`` to ``other``, at the instant of ``found``; None
     where one of them has no rate then."""
-    at = of(found)
+    at = of_outcome(found)
     first, second = rate(found, at), rate(other, at)
     if first is None or second is None:
         return None

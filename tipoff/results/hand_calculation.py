@@ -54,7 +54,7 @@ def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
         return None
     moment = np.zeros(3)
     if model.pushers is not None:
-        pushes, impulses = model.pushers, ends.spring_impulses(launch.of(scene))
+        pushes, impulses = model.pushers, ends.spring_impulses(launch.of_scene(scene))
         moment += impulses @ np.cross(pushes.point, pushes.direction)
         grown = _turned(run, pushes.travel.max()) * impulses @ np.linalg.norm(pushes.point, axis=1)
         if grown > _GROWTH * np.linalg.norm(moment):

@@ -25,7 +25,7 @@ def line(run: "Trajectory") -> str:
         if len(run.time)
         else "no samples"
     )
-    at = instant.of(run.outcome)
+    at = instant.of_outcome(run.outcome)
     velocity, rate = instant.velocity(run.outcome, at), instant.rate(run.outcome, at)
     found = (
         f": v_x {velocity[0]:.5g} m/s, rates {_rates(rate)} deg/s{_where(at)}"
@@ -37,7 +37,7 @@ def line(run: "Trajectory") -> str:
 
 def facts(run: "Trajectory") -> dict[str, str]:
     """The main results as text by title, at the instant that counts and then at the other one."""
-    found, at = run.outcome, instant.of(run.outcome)
+    found, at = run.outcome, instant.of_outcome(run.outcome)
     text = {"scene": str(run.scene.get("name", "")), "model": run.model, "status": run.status}
     if run.message:
         text["message"] = run.message

@@ -51,7 +51,7 @@ def advice(scene: Scene, run: "Trajectory") -> str:
 def foreseen(scene: Scene) -> str:
     """Reason why no run of ``scene`` can settle within its stated duration, for any friction, and a
     remedy; empty if this cannot be known in advance."""
-    least = 0.0 if scene.duration is None else ends.earliest(launch.of(scene))
+    least = 0.0 if scene.duration is None else ends.earliest(launch.of_scene(scene))
     if scene.duration is None or not below(scene.duration, least):
         return ""
     if not math.isfinite(least):
@@ -92,7 +92,7 @@ def _behind_the_rail(scene: Scene) -> str:
 
 def _jammed(scene: Scene, run: "Trajectory") -> str:
     way, whole, speeds = _progress(scene, run)
-    along = launch.of(scene)
+    along = launch.of_scene(scene)
     if stop.is_there(along):
         weight = f"{stop.weight(along):.4g} N of its weight along the rail"
         if stop.release_time(along) == math.inf:
@@ -134,13 +134,13 @@ def _progress(scene: Scene, run: "Trajectory") -> tuple[float, float, np.ndarray
     m/s."""
     moved = relative_motion(run)
     place = moved["relative_position"][:, 0]
-    return float(place[-1] - place[0]), launch.of(scene).way, moved["relative_velocity"][:, 0]
+    return float(place[-1] - place[0]), launch.of_scene(scene).way, moved["relative_velocity"][:, 0]
 
 
 def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
     way, whole, speeds = _progress(scene, run)
     speed, now = float(speeds[-1]), float(run.time[-1])
-    if way < 0.0 and speed < 0.0 and stop.weight(launch.of(scene)) > 0.0:
+    if way < 0.0 and speed < 0.0 and stop.weight(launch.of_scene(scene)) > 0.0:
         slid = f"slid back along the rail: {-1e3 * way:.3g} mm behind its start, at {speed:.2g} m/s"
         return f"{slid}: its weight pulls it, and no stop or latch holds it ([hold_down] release)"
     text = f"still on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"

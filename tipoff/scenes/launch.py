@@ -32,16 +32,16 @@ class Timed:
             >>> scene.replace({"duration": None}).time_limit  # s
             32.768
         """
-        return self.duration if self.duration is not None else ends.limit(of(self))
+        return self.duration if self.duration is not None else ends.limit(of_scene(self))
 
     @property
     def expected_end(self: Any) -> float:
         """Estimate of the end of a run (s), for plots, progress and costs: the duration, or without
         one the end for a payload without friction."""
-        return self.duration if self.duration is not None else ends.expected(of(self))
+        return self.duration if self.duration is not None else ends.expected(of_scene(self))
 
 
-def of(scene: Any) -> Launch:
+def of_scene(scene: Any) -> Launch:
     """The launch of ``scene``."""
     thrust, platform, first, latch = scene.thrust, scene.platform, scene.initial, scene.hold_down
     reacts = platform is not None and thrust.reaction == "platform"

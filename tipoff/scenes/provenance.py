@@ -33,12 +33,12 @@ def overridden(
             other for other in found if other not in given and f"{other}.".startswith(f"{key}.")
         ]:
             del found[other]
-        if (text := of(given, key)) is None:
+        if (text := nearest(given, key)) is None:
             _pass_on(found, raw, key)
             if not dropped:
                 found[key] = USER
         # an inner table had its own text
-        elif of(found, key) != text:
+        elif nearest(found, key) != text:
             found[key] = text
     return found
 
@@ -61,7 +61,7 @@ def mark(raw: dict, changed: Mapping[str, Any]) -> None:
     )
 
 
-def of(texts: Mapping[str, str], key: str) -> str | None:
+def nearest(texts: Mapping[str, str], key: str) -> str | None:
     """The text of a dotted key or of the innermost table around it; None without a text."""
     parts = key.split(".")
     return next(

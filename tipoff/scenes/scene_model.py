@@ -116,7 +116,7 @@ def _hold_down(scene: Scene) -> HoldDown | None:
     """Latch and stop, None if nothing is held after the ignition. Raises SceneError as
     ``hold_down.require``."""
     hold_down.require(scene)
-    along = launch.of(scene)
+    along = launch.of_scene(scene)
     time = stop.release_time(along)
     centre = scene.platform.mass_centre if scene.platform is not None else None
     line = (0.0, 0.0) if centre is None else (-centre.y, -centre.z)

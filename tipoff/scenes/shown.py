@@ -52,7 +52,7 @@ class Shown(Carded):
         from tipoff import plots  # slow to load
 
         time = np.linspace(0.0, self.expected_end, _PLOTTED)
-        force = thrust_law.sample(ends.over_time(launch.of(self)), time)
+        force = thrust_law.sample(ends.over_time(launch.of_scene(self)), time)
         across = ("time after ignition (ms)", 1e3 * time)
         return plots.lines(across, "thrust (N)", [("thrust", force)], self.name, axes)
 

@@ -47,7 +47,7 @@ class _Spring(NamedTuple):
 
 def load(scene) -> float:
     """Largest static load (N) of one pad face across the axis, see the module docstring."""
-    peak = float(thrust.peak(ends.over_time(launch.of(scene)), scene.time_limit))
+    peak = float(thrust.peak(ends.over_time(launch.of_scene(scene)), scene.time_limit))
     tilt = scene.thrust_offset.misalignment.axial if scene.thrust_offset is not None else 0.0
     force = registry.body_force(scene)
     weight = scene.payload.mass * float(np.hypot(force.y, force.z)) if force is not None else 0.0

@@ -45,7 +45,7 @@ def warnings(scene) -> list[str]:
 def _of_size(scene) -> list[str]:
     """A thrust that is too strong or too weak for its mass and rail."""
     keys = "thrust, payload.mass"
-    along = launch.of(scene)
+    along = launch.of_scene(scene)
     record, speed = ends.over_time(along), ends.speed_change(along)
     limit = max(thrust_law.last(record), 1e-9)
     strongest = thrust_law.peak(record, limit) / scene.payload.mass

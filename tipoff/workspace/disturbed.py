@@ -37,17 +37,17 @@ _KEPT: cache.Cache[Disturbed] = cache.documents(asdict, _loaded)
 
 
 def kept(store: Store, run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:
-    """As ``of``, read from the ``store`` if it is there with the same key, else computed and stored."""
+    """As ``measured``, read from the ``store`` if it is there with the same key, else computed and stored."""
     key = content_hash(run.key, clearance_change, sources.of_runs(__name__))
     return _KEPT.get_or_make(
         store.path(run).with_suffix(".disturbed.json"),
         key,
         "its disturbed runs are made again",
-        lambda: of(run, nominal, clearance_change),
+        lambda: measured(run, nominal, clearance_change),
     )
 
 
-def of(run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:
+def measured(run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:
     """Changes by ``clearance_change`` (m), and by a tighter tolerance."""
     if run.calibration is not None:  # its clearance is changed
         run = replace(run, scene=run.calibration.apply(run.scene), calibration=None)

@@ -44,16 +44,16 @@ _KEPT: cache.Cache[ModelError] = cache.documents(ModelError.plain, ModelError.of
 
 
 def kept(store: Store, run: Run, nominal: Trajectory, moved: Disturbed) -> ModelError:
-    """As ``of``, read from the ``store`` if it is there with the same key, else computed and stored."""
+    """As ``measured``, read from the ``store`` if it is there with the same key, else computed and stored."""
     return _KEPT.get_or_make(
         store.path(run).with_suffix(".error.json"),
         content_hash(run.key, disturbed.plain(moved), sources.of_runs(__name__)),
         "its error is computed again",
-        lambda: of(run, nominal, moved),
+        lambda: measured(run, nominal, moved),
     )
 
 
-def of(run: Run, nominal: Trajectory, moved: Disturbed) -> ModelError:
+def measured(run: Run, nominal: Trajectory, moved: Disturbed) -> ModelError:
     """The error of ``nominal``, which is of ``run``, has rates, and is ``moved`` by small disturbances."""
     if run.calibration is not None:
         run = replace(run, scene=run.calibration.apply(run.scene), calibration=None)
@@ -86,9 +86,11 @@ def told(run: Run, nominal: Trajectory, limit: float) -> Trajectory:
 
     if nominal.outcome.rate is None:
         return nominal
-    moved = once(partial(disturbed.of, run, nominal, twins.CLEARANCE_CHANGE))
+    moved = once(partial(disturbed.measured, run, nominal, twins.CLEARANCE_CHANGE))
     checked = nominal.completed_by(lambda: _told(nominal, moved(), limit), "checks", "message")
-    return checked.completed_by(lambda: replace(nominal, error=of(run, nominal, moved())), "error")
+    return checked.completed_by(
+        lambda: replace(nominal, error=measured(run, nominal, moved())), "error"
+    )
 
 
 def _told(nominal: Trajectory, found: Disturbed, limit: float) -> Trajectory:
@@ -134,7 +136,7 @@ def _range(run: Run, nominal: Trajectory, moved: Disturbed) -> Range:
             for step in np.linspace(-most, most, NEIGHBOURS).tolist()
             if (side := "minus" if step < 0.0 else "plus") in contact.either_way(abs(step))
         ]
-    at = instant.of(nominal.outcome)
+    at = instant.of_outcome(nominal.outcome)
     runs = [nominal.outcome, *(execute(each).outcome for each in every)]
     rates = [instant.rate(outcome, at) for outcome in runs]
     known = np.degrees(np.array([rate for rate in rates if rate is not None]))

@@ -67,7 +67,7 @@ class Population:
         tight = self.many(rows, Numerics(relative_tolerance=_TIGHT, modes=self.modes))
         self.rates = tight.rate.values
         self.scenes = [base.replace(row) for row in rows]
-        marks = outcome.milestones(launch.of(base), base.time_limit)
+        marks = outcome.milestones(launch.of_scene(base), base.time_limit)
         self.starts = [outcome.window_start(float(at), marks) for at in tight.exit_time.values]
 
     def many(self, rows, numerics):

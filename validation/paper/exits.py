@@ -24,7 +24,7 @@ def run(launcher: misfit.Launcher, shares: np.ndarray) -> Columns:
     rows = [{_RADIAL: math.radians(radial)} for _, radial in published.angles().values()]
     jobs = Family(launcher.scene(shares), None, launcher.numerics).jobs(rows)
     cases = dict(pair for job in jobs for pair in job())
-    return columns.of([cases[number] for number in range(len(rows))])
+    return columns.of_cases([cases[number] for number in range(len(rows))])
 
 
 def summary(left: Columns) -> dict:

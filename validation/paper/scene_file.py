@@ -65,7 +65,7 @@ def scene(base: Scene, found: dict[str, float], rates: np.ndarray) -> str:
         "refined": ["phi35"],
     }
     inferred = {_home(key) for key in changed if key not in _PRINTED}
-    printed = {key: provenance.of(base.provenance, key) for key in _PRINTED}
+    printed = {key: provenance.nearest(base.provenance, key) for key in _PRINTED}
     table["provenance"] = dict.fromkeys(sorted(inferred), "inferred") | {
         key: text for key, text in printed.items() if text is not None
     }

@@ -148,7 +148,7 @@ def test_a_payload_that_coasts_slowly_leaves(solve):
     ms, in both models. Control: the same friction holds a payload that would be faster than 10 mm/s
     without (``scenes.test_ends``)."""
     asked = tiny(thrust__peak="5 N", thrust_offset="absent", duration="absent")
-    asked = asked.replace({"initial.position.x": launch.of(asked).way - 1e-4})
+    asked = asked.replace({"initial.position.x": launch.of_scene(asked).way - 1e-4})
     push, masses = asked.thrust, (asked.payload.mass, asked.platform.mass)
     speed = push.peak * push.width * np.sqrt(2.0 * np.pi) * sum(1.0 / mass for mass in masses)
     found = solve(asked)

@@ -47,7 +47,7 @@ def test_a_rocket_rests_on_its_stop_until_its_motor_burns(angle):
     late = {"kind": "constant", "force": 9e3, "start": 5e-3, "duration": 0.1}
     absent = {"friction": None, "thrust_offset": None, "platform": None, "duration": None}
     asked = tiny(**absent, thrust=late, gravity={"x": -9.81 * np.sin(angle)})
-    run, pull, way = highfi.run(asked, COARSE), 9.81 * np.sin(angle), launch.of(asked).way
+    run, pull, way = highfi.run(asked, COARSE), 9.81 * np.sin(angle), launch.of_scene(asked).way
     assert np.abs(run.velocity[run.time < late["start"]]).max() < 1e-12
     push = late["force"] / asked.payload.mass - pull
     error = push * run.cost["dt_s"]

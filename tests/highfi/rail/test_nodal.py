@@ -68,7 +68,7 @@ def test_a_place_deflects_as_in_one_solution_of_the_whole_mesh(both, scene):
     """By a sparse factor, for the mean under each face of a unit force on each: between mounts, over a
     mount and near the end, all pads on the rail. Control: the next station has another compliance."""
     found, _, held = both
-    own = compliance.inputs.of(scene)
+    own = compliance.inputs.of_scene(scene)
     stations = np.searchsorted(found.travel, [0.02, 0.11, 0.26])
     direct = compliance.of_rails(
         [HeldRail(each.rail, each.images, each.material, each.joint) for each in held],

@@ -113,7 +113,7 @@ def test_a_file_holds_it(nominal, tmp_path):
 def test_one_pattern_that_friction_does_not_drag():
     """As the convergence study asks for: the same numbers as with friction, and none of it."""
     scene = on_joints()
-    held, own = compliance.rails(scene, SIZE), inputs.of(scene)
+    held, own = compliance.rails(scene, SIZE), inputs.of_scene(scene)
     without, dragged = (
         compliance.of_rails(held, own.faces, own.reach, [0.0, 0.05], 1, 4, count, joints=True)
         for count in (0, 1)

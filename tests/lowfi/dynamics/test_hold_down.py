@@ -157,7 +157,7 @@ def test_a_rocket_rests_on_its_stop_until_its_motor_burns(angle):
     """From rest its speed at the end of the rail is sqrt(2 a s). Control: without latch and stop it falls
     until then, by d = g t^2 / 2, and has the speed sqrt((g t)^2 + 2 a (s + d))."""
     asked = on_slope(angle)
-    pull, way, start = G * np.sin(angle), launch.of(asked).way, LATE["start"]
+    pull, way, start = G * np.sin(angle), launch.of_scene(asked).way, LATE["start"]
     push = LATE["force"] / MASS - pull
     run = lowfi.run(asked, "springs")
     assert np.abs(run.velocity[run.time < start]).max() < 1e-12

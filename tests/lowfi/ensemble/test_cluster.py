@@ -63,7 +63,7 @@ def two_workers():
 def test_twins_have_the_bits_of_one_process(tmp_path, two_workers):
     """Each worker changes its Family."""
     asked = ensemble(cases=3 * CHUNK)
-    for twin in (asked, *twins.of(asked).values()):
+    for twin in (asked, *twins.of_ensemble(asked).values()):
         here, there = twin.store(tmp_path / twin.key), twin.store(tmp_path / f"{twin.key}-far")
         fill(twin, here)
         fill(twin, there, scheduler=two_workers.scheduler_address)

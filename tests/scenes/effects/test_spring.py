@@ -219,9 +219,9 @@ def test_the_estimate_over_time_is_a_quarter_of_an_oscillation():
     """Without friction: time arccos(1 - s/a) / w and speed a w sin(w t), with a = P/k, w2 = k/m."""
     scene = parse(spring())
     mass, w, a = scene.payload.mass, math.sqrt(2e3 / scene.payload.mass), 0.05
-    law, end = ends.over_time(launch.of(scene)), math.acos(1.0 - 0.04 / a) / w
+    law, end = ends.over_time(launch.of_scene(scene)), math.acos(1.0 - 0.04 / a) / w
     assert thrust_law.last(law) == pytest.approx(end, rel=1e-5)
     speed = a * w * math.sin(w * end)
     assert thrust_law.impulse(law, 1.0) / mass == pytest.approx(speed, rel=1e-5)
-    assert ends.exit_speed(launch.of(scene)) == pytest.approx(speed, rel=1e-4)
-    assert ends.spring_impulses(launch.of(scene))[0] == pytest.approx(mass * speed, rel=1e-5)
+    assert ends.exit_speed(launch.of_scene(scene)) == pytest.approx(speed, rel=1e-4)
+    assert ends.spring_impulses(launch.of_scene(scene))[0] == pytest.approx(mass * speed, rel=1e-5)

@@ -12,7 +12,7 @@ def test_record():
     scene = parse(small(contact=CONTACT, friction=STICKING))
     found = scene_model.build(scene)
     assert found.friction == pytest.approx(Sticking(0.4, 0.3, 1e7, 1e4, 1e-6))
-    assert launch.of(scene).slow == 0.01
+    assert launch.of_scene(scene).slow == 0.01
 
 
 def test_a_table_without_a_law_is_two_step():

@@ -64,7 +64,7 @@ def test_every_value_of_a_design_is_in_the_scene_with_its_field(packed, tmp_path
         "buttons": "railbutton: axialoffset",
         "rail.end": "launchrodlength",
     }.items():
-        text = scenes.provenance.of(scene.provenance, key)
+        text = scenes.provenance.nearest(scene.provenance, key)
         assert text.startswith("design.ork: ") and field in text
     vary = uncertainty.of_scene(scene).vary
     assert vary["payload.mass"].ppf(0.5) == pytest.approx(9.5)

@@ -45,7 +45,7 @@ def test_it_holds_the_numbers_and_is_plausible(launcher):
     assert scene.payload.size == pytest.approx(numbers.size, rel=1e-5)
     assert scene.contact.clearance == pytest.approx(numbers.clearance, rel=1e-5)
     assert scene.thrust.peak == numbers.thrust
-    assert launch.of(scene).way == pytest.approx(numbers.rail_length, rel=1e-5)
+    assert launch.of_scene(scene).way == pytest.approx(numbers.rail_length, rel=1e-5)
     assert implausible.of_all_conditions(scene) == []
 
 
@@ -120,7 +120,7 @@ def test_four_long_pads_reach_as_far_as_eight_and_hold_the_payload(tmp_path):
     """The payload turns by less than the clearance allows a body between the ends of its pads.
     Control: pads as short as those of two stations let it turn by more."""
     four, eight = (_scene(Numbers(pads=count), tmp_path) for count in (4, 8))
-    assert launch.of(four).way == pytest.approx(launch.of(eight).way, rel=1e-9)
+    assert launch.of_scene(four).way == pytest.approx(launch.of_scene(eight).way, rel=1e-9)
     assert implausible.of_all_conditions(four) == []
     held = 2.0 * four.contact.clearance / four.pads[0].length
     tilted = four.replace({"thrust_offset.misalignment.axial": "2 deg"})
@@ -226,7 +226,7 @@ def test_a_deployer_of_each_size_fits_its_cubesat(size, tmp_path, monkeypatch):
         return 2.0 * work / one.payload.mass
 
     assert speed_squared(scene) == pytest.approx(speed_squared(usual), rel=1e-4)
-    assert provenance.of(scene.provenance, "payload.size").startswith(
+    assert provenance.nearest(scene.provenance, "payload.size").startswith(
         "assumed" if size == "16u" else "CubeSat Design Specification"
     )
     vary = uncertainty.of_scene(scene).vary
@@ -260,7 +260,7 @@ def test_a_rocket_has_the_given_numbers_and_the_motor_of_the_catalogue_beside_it
     assert scene.rail.end - scene.rail.start == pytest.approx(3.0)
     stated = ("payload.mass", "payload.size", "rail.end", "contact.clearance")
     assert all(scene.provenance[key] == "given to tipoff new" for key in stated)
-    assert provenance.of(scene.provenance, "payload.inertia.xx").startswith("assumed")
+    assert provenance.nearest(scene.provenance, "payload.inertia.xx").startswith("assumed")
     assert (tmp_path / "j360_start.csv").exists() and scene.warnings == []
     # the errors of the catalogue are about 5 kg and 0.25 to 0.5 mm
     drawn = uncertainty.of_scene(scene).vary

@@ -39,7 +39,7 @@ def study(scene, folder):
 def test_the_range_of_a_launch_whose_distribution_is_known(tilted, tmp_path):
     """A uniform tilt gives a uniform rate. One percent of the range is four standard deviations of an
     end. Control: the quantiles 5 and 95 %, and the number of cases of the file, are further off."""
-    found = spread.of(study(tilted, tmp_path), tilted)
+    found = spread.of_scene(study(tilted, tmp_path), tilted)
     assert found.settled == found.cases == spread.CASES[0]
     largest = math.radians(0.4) * free_flight.RATE_PER_RADIAN
     for name, sign in (("rate_deg_s", 1.0), ("rate_z_deg_s", -1.0)):
@@ -55,7 +55,7 @@ def test_the_range_of_a_launch_whose_distribution_is_known(tilted, tmp_path):
 
 def test_a_scene_without_errors_has_no_range_and_the_page_says_how_to_state_them(tmp_path):
     scene = free_flight.scene().replace({"studies": None})
-    assert spread.of(study(scene, tmp_path), scene) is None
+    assert spread.of_scene(study(scene, tmp_path), scene) is None
     (said,) = page.ranges(None)
     assert "no range is known" in said and 'errors = "paper"' in said
 
@@ -64,7 +64,7 @@ def test_errors_that_do_not_fit_the_scene_are_refused(tmp_path):
     (tmp_path / "bad.toml").write_text(TILT.replace("axial", "axis"))
     scene = free_flight.scene().replace({"studies.errors": str(tmp_path / "bad.toml")})
     with pytest.raises(SceneError, match="misalignment.axis"):
-        spread.of(study(scene, tmp_path), scene)
+        spread.of_scene(study(scene, tmp_path), scene)
 
 
 def drawn(draw, settled=1.0):
@@ -95,19 +95,19 @@ def test_more_cases_are_drawn_where_the_ends_are_not_known_well(
     draw, cases, tilted, tmp_path, monkeypatch
 ):
     monkeypatch.setattr("tipoff.studies.populations.population.run", drawn(draw))
-    found = spread.of(study(tilted, tmp_path), tilted)
+    found = spread.of_scene(study(tilted, tmp_path), tilted)
     assert found.cases == cases
 
 
 def test_cases_that_did_not_settle_are_said(tilted, tmp_path, monkeypatch):
     normal = drawn(lambda random, n: random.normal(size=n), settled=0.9)
     monkeypatch.setattr("tipoff.studies.populations.population.run", normal)
-    found = spread.of(study(tilted, tmp_path), tilted)
+    found = spread.of_scene(study(tilted, tmp_path), tilted)
     said = " ".join(page.ranges(found))
     assert f"{found.cases - found.settled:,} of them" in said and "did not leave and settle" in said
     few = drawn(lambda random, n: random.normal(size=n), settled=0.01)
     monkeypatch.setattr("tipoff.studies.populations.population.run", few)
-    found = spread.of(study(tilted, tmp_path), tilted)
+    found = spread.of_scene(study(tilted, tmp_path), tilted)
     assert found.ranges is None and "No range" in " ".join(page.ranges(found))
 
 

@@ -98,7 +98,7 @@ def test_a_condition_that_does_not_settle_has_no_values_and_shows_its_status(qui
     )
     cases = [Case("exited", "", ended, 10, 0.0)] * 5
     cases[2] = Case("time_limit", "", Outcome(), 10, 0.0)
-    odd = found | {"exit": exits.summary(columns.of(cases))}
+    odd = found | {"exit": exits.summary(columns.of_cases(cases))}
     table = section.table_at_exit(odd["exit"])
     assert table.rows[4][1:] == (5.0, 5.0, None, 5.0, 5.0)
     assert table.heads[3] == "3 at 35 deg, time limit"

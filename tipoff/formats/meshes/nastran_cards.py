@@ -101,8 +101,8 @@ def _is_free(line: str, before: bool) -> bool:
 
 
 def _between_blanks(line: str, number: int) -> tuple[str, list[str], str]:
-    """The same as ``_fields``. Raises Unreadable for a GRID that lacks a number: no blank stands for an
-    empty field."""
+    """Fields of a line as ``_fields`` returns them, separated by blanks. Raises Unreadable for a GRID
+    that lacks a number: no blank stands for an empty field."""
     first, *data = line.split()
     if line[0].isspace() and first[0].isdigit():
         first, data = "", [first, *data]

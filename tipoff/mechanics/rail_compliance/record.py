@@ -279,7 +279,7 @@ class RailCompliance(Shown):
         return patterns.on_part(part, self.degree)
 
     def rigid(self) -> "RailCompliance":
-        """The same walls without flexibility: only their offsets, for springs."""
+        """These walls without flexibility: only their offsets, for springs."""
         return replace(
             self, flexibility=None, dragged=None, nodes=None, element_size=None, uncertainty=None
         )

@@ -122,7 +122,11 @@ def _si(value: Any, unit: str) -> Any:
 
 def _with_sources(stated: Mapping, derived: Mapping[str, str]) -> dict:
     texts = dict(keys.dotted(stated))
-    own = {key: text for key, text in derived.items() if text and provenance.of(texts, key) is None}
+    own = {
+        key: text
+        for key, text in derived.items()
+        if text and provenance.nearest(texts, key) is None
+    }
     return own | texts
 
 

@@ -68,7 +68,7 @@ def compliant(study: Study, conditions: Iterable[str]) -> Candidate:
 
 
 def on_coarse(study: Study, compared: Iterable[Candidate]) -> dict[str, Candidate]:
-    """The same surrogates by name, on the rail compliance of the coarse mesh."""
+    """The surrogates ``compared`` by name, on the rail compliance of the coarse mesh."""
     coarse = study.rail_compliances(study.conditions, study.settings.coarse_size)
     return {
         candidate.name: candidate._replace(compliance=coarse) if candidate.compliance else candidate

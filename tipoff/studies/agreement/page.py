@@ -205,7 +205,7 @@ def summary(rows: Sequence[JudgedCondition], words: str = "") -> str:
 
 
 def counts(rows: Sequence[JudgedCondition], words: str = "") -> tuple[str, str]:
-    """The same in two parts: how many of how many, and the rest of the sentence."""
+    """The two parts of ``summary``: how many of how many, and the rest of the sentence."""
     count = Counter(row.judgement for row in rows)
     free = sum(row.judgement == verdicts.AGREES and not row.touches for row in rows)
     curves, alike, missing = (

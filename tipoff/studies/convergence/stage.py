@@ -70,7 +70,7 @@ class Change:
 
 @dataclass(frozen=True, kw_only=True)
 class OtherStiffness(Change):
-    """The same with ``factor`` times the interface stiffness."""
+    """A run with ``factor`` times the interface stiffness."""
 
     factor: Annotated[float, Column("factor", form="g")]
     interface_stiffness_n_m3: Annotated[float, Column("interface stiffness", "N/m³")]
@@ -78,7 +78,7 @@ class OtherStiffness(Change):
 
 @dataclass(frozen=True, kw_only=True)
 class OtherCells(Change):
-    """The same with another number of contact cells."""
+    """A run with another number of contact cells."""
 
     cells_per_edge: Annotated[int, Column("contact cells along each edge of a pad")]
 

@@ -74,7 +74,7 @@ def of_case(ensemble: Ensemble, number: int, nominal: Case) -> dict[str, float |
     """Changes of the settled rates of one case (deg/s) by cause; None where the case or its twin
     does not settle."""
     found: dict[str, float | None] = {}
-    for cause, twin in twins.of(ensemble).items():
+    for cause, twin in twins.of_ensemble(ensemble).items():
         rates = nominal.outcome.rate, twin.case(number)[1].outcome.rate
         found[cause] = None
         if rates[0] is not None and rates[1] is not None:

@@ -263,7 +263,7 @@ def _sensitivity(
     if not options.sensitivity:
         return None
     disturbed, costs = {}, {}
-    for cause, twin in twins.of(ensemble).items():
+    for cause, twin in twins.of_ensemble(ensemble).items():
         disturbed[cause] = twins.opened(twin, cause, store)
         words_ = sensitivity.CAUSES[cause]
         costs[cause] = _filled(study, twin, disturbed[cause], options, board, words_)
@@ -330,7 +330,7 @@ def case(study: Study, options: Options, number: int) -> One:
         found=found,
         limit_deg_s=_limit(study),
         changes=changes,
-        stored=None if kept_ is None else _equal(kept_, columns.of([found])),
+        stored=None if kept_ is None else _equal(kept_, columns.of_cases([found])),
     )
 
 

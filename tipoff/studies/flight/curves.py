@@ -12,7 +12,7 @@ _POINTS = 201
 _NEAR, _LEAST = 5e-4, 2.0
 
 
-def of(condition: str, both: flown.Pair, found: flown.Flown) -> Curves:
+def of_condition(condition: str, both: flown.Pair, found: flown.Flown) -> Curves:
     """Curves of a condition, the one case of ``both``."""
     flight = both.flight
     ends = float(found.passes[0]) if np.isfinite(found.passes[0]) else flight.duration

@@ -134,7 +134,9 @@ def _conditions(
         for name in ended
     ]
     first = [name for name in study.scene.agreement.fitted if name in pairs] or settled
-    shapes = [curves.of(name, pairs[name], values[name]) for name in first[: curves.SHOWN]]
+    shapes = [
+        curves.of_condition(name, pairs[name], values[name]) for name in first[: curves.SHOWN]
+    ]
     if not single:
         return rows, shapes, None, None
     together = bodies.of_outcomes([ended[name].outcome for name in settled])

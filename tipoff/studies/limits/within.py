@@ -150,7 +150,7 @@ class Cases:
                 for begin in range(0, drawn.asked, PIECE)
             )
             workers = self._study.settings.workers
-            found = columns.of(
+            found = columns.of_cases(
                 [case for piece in completed(ensemble.family(), pieces, workers) for case in piece]
             )
             shown = columns.seen(found, self._model.instant.at)

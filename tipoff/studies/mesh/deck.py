@@ -53,7 +53,7 @@ def _under_first_pad(scene: Scene, held: HeldRail) -> np.ndarray | None:
     """Nodal loads (3n,) of a force of 1 N on the wall, spread over the first pad face on it."""
     if scene.contact is None:
         return None
-    own, patches = inputs.of(scene), Patches(held.rail, 1)
+    own, patches = inputs.of_scene(scene), Patches(held.rail, 1)
     half = half_sizes(own.faces)
     number = patches.under(own.faces, half, held.images[0], own.reach, np.zeros(1))[0]
     if not (number >= 0).any():

@@ -130,7 +130,7 @@ def _of_spread(spread: Spread | None) -> list[str]:
 
 
 def lines(found: Nominal) -> list[str]:
-    """The same for the terminal, one line for each quantity."""
+    """The values with their ranges for the terminal, one line for each quantity."""
     if _values(found) is None:
         return notes(found)
     own = [

@@ -82,7 +82,7 @@ class Spread:
     store: str
 
 
-def of(study: Study, scene: Scene) -> Spread | None:
+def of_scene(study: Study, scene: Scene) -> Spread | None:
     """Ranges of ``QUANTITIES`` of ``scene`` by compliant contact, at the exit or settled by the rule of
     ``mechanics.instant``; None if the scene states no errors.
 

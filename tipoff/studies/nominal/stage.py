@@ -70,7 +70,7 @@ def run(study: Study) -> Made[Nominal]:
             at=taken.at,
             at_why=taken.why,
             answer={model: answer(row, taken.at) for model, row in rows.items()},
-            spread=spread.of(study, scene),
+            spread=spread.of_scene(study, scene),
             failed=tuple(failed),
         )
         return made, paths

@@ -168,7 +168,7 @@ class Kept(NamedTuple):
 
 def results(runs: Sequence[Kept], at: str) -> Columns:
     """Results of runs as columns, with velocity and rate of the instant ``at``."""
-    return columns.seen(columns.of([each.case for each in runs]), at)
+    return columns.seen(columns.of_cases([each.case for each in runs]), at)
 
 
 @dataclass(frozen=True)

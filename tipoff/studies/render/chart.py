@@ -225,7 +225,7 @@ def across(panel: Panel) -> tuple[float, float]:
 
 
 def upwards(panel: Panel) -> tuple[float, float]:
-    """The same for y, with the band."""
+    """Limits of a logarithmic y: whole decades around all points and the band."""
     return _decades(
         [value for line in panel.lines for value in line.y]
         + ([panel.band[0]] if panel.band else [])

@@ -76,7 +76,7 @@ def readable(value: Any, unit: str) -> str:
 def provenance(scene: Scene, key: str, stated: bool) -> str:
     """The origin of a key, or of its table, as the scene states it; "default" for a key that the
     file does not contain."""
-    found = origin.of(scene.provenance, key)
+    found = origin.nearest(scene.provenance, key)
     return found if found is not None else "not stated" if stated else "default"
 
 

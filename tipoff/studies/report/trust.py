@@ -60,7 +60,7 @@ def _inputs(scene: Scene, agreement: Agreement | None) -> list[str]:
     assumed, every = 0, 0
     for key, _, _, was_stated in inputs.values(scene):
         every += 1
-        text = provenance.of(scene.provenance, key) or ""
+        text = provenance.nearest(scene.provenance, key) or ""
         assumed += text.startswith("assumed") or (was_stated and not text)
     moved = ""
     if agreement is not None:

@@ -44,7 +44,7 @@ _COLOURS = {"highfi": NAVY, "compliant": VERMILION, "calibrated": AMBER}
 def thrust_curve(scene: Scene) -> Chart:
     """Thrust until the expected end of the run."""
     time = np.linspace(0.0, scene.expected_end, 600)
-    force = thrust_law.sample(ends.over_time(launch.of(scene)), time)
+    force = thrust_law.sample(ends.over_time(launch.of_scene(scene)), time)
     line = Line(1e3 * time, 1e-3 * force, "thrust", width=2.0, legend=False)
     return Chart("thrust", [Panel("", _MILLISECONDS, "thrust (kN)", [line])], height=260)
 

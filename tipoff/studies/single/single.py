@@ -174,7 +174,7 @@ def ranged(study: Study, condition: str, detail: Detail = Detail.ANSWER) -> dict
     prints them unless the ``detail`` is nothing."""
     from tipoff.studies.nominal import page, spread
 
-    found = spread.of(study, study.condition(condition))
+    found = spread.of_scene(study, study.condition(condition))
     if detail:
         print("\n".join(f"  {line}" for line in page.ranges(found)))
     return {"spread": found and asdict(found)}

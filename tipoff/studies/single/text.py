@@ -98,7 +98,7 @@ def _parts(row: Single) -> list[str]:
 
 def _stop(scene: Scene) -> list[str]:
     """How long the payload rests on its stop, without a latch that holds it longer."""
-    along = launch.of(scene)
+    along = launch.of_scene(scene)
     left = stop.release_time(along)
     if not stop.is_there(along) or along.latched == left > 0.0:
         return []

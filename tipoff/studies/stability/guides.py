@@ -140,7 +140,7 @@ def wedged() -> Verdict:
 
 
 def nearly_wedged() -> Verdict:
-    """The same at 120 mm: 4 % of the push remains."""
+    """mu 0.8 with the push at 120 mm, just before the lock: 4 % of the push remains."""
     found, smooth = (_whole(_slider(0.8, 0.120, 0.04, transition)) for transition in (1e-3, 0.5))
     exact = (1.0 - 2.0 * 0.8 * 0.120 / _SPAN) * _PUSH / _MASS
     measured, control = (

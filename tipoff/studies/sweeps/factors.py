@@ -70,7 +70,7 @@ def free_rates(
     inputs = dict(zip(table.keys, numbers(table.keys, rows).T))
     impulse = float(
         thrust.impulse(
-            ends.over_time(launch.of(scene)), scene.time_limit if until is None else until
+            ends.over_time(launch.of_scene(scene)), scene.time_limit if until is None else until
         )
     )
     return (

@@ -51,7 +51,7 @@ class StaticTwin:
     ``follow`` the end of the rail."""
 
     def __init__(self, scene: Scene, element_size: float, cells: int, follow: bool = False):
-        own = inputs.of(scene)
+        own = inputs.of_scene(scene)
         self.model_faces, self._half = own.faces, half_sizes(own.faces)
         self._reach, self._cells, self._follow = own.reach, cells, follow
         self._interface = scene.contact.series_stiffness()
