@@ -83,3 +83,32 @@ def test_a_spring_whose_lever_grows_is_not_counted_by_hand(near):
     if near:
         size = np.linalg.norm(run.outcome.rate)
         assert found.rate == pytest.approx(run.outcome.rate, abs=0.1 * size) and size > 1e-2
+
+
+@pytest.mark.parametrize("clock", ["90 deg", "270 deg"])
+def test_a_rocket_turns_about_its_rear_button(clock):
+    """The rate at exit across the slot, with 5 um of play and buttons that do not bounce, under a thrust that
+    is tilted by 1 deg either way. Control: gravity alone has a moment of another size."""
+    play = {"contact.clearance": "5 um", "initial.position.z": "-5 um", "friction": None}
+    tilted = {"thrust_offset.misalignment": {"axial": "1 deg", "radial": clock}}
+    one = load("rocket_rail").replace(play | tilted | {"contact.damping": "20 N*s/mm"})
+    run = lowfi.run(one, "springs")
+    found = hand_calculation.pinned(one, run)
+    assert not isinstance(found, str) and "rear button" in found.words
+    assert found.rate[1] == pytest.approx(run.outcome.exit_rate[1], rel=0.08)
+    mass, arm = one.payload.mass, -run.guides[0].place_m[0]
+    span = run.guides[0].leaves_s - run.guides[1].leaves_s
+    falling = mass * 0.8547 * arm * span / (one.payload.inertia.yy + mass * arm**2)
+    assert abs(falling / run.outcome.exit_rate[1] - 1.0) > 0.2
+
+
+def test_what_is_not_valid_has_a_reason():
+    rocket, tiny = load("rocket_rail"), load("tiny").condition("phi15")
+    run = lowfi.run(tiny, "springs")
+    assert "two buttons" in hand_calculation.pinned(tiny, run)
+    touched = flight(pad_force=np.ones((601, 16, 3)))
+    assert hand_calculation.rates(load("tiny"), touched) is None
+    assert "8 pads touch" in hand_calculation.why_not(load("tiny"), touched)
+    assert hand_calculation.why_not(load("tiny"), flight()) == ""
+    short = rocket.replace({"duration": "0.1 s"})
+    assert "stays on the rail" in hand_calculation.pinned(short, lowfi.run(short, "springs"))

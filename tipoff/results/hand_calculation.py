@@ -7,6 +7,13 @@ on the only pad that touches, at c; all in body axes. The gyroscopic term w x J 
 a second pad are left out. So the result is valid if no pad or one pad touches. A spring pushes in a
 direction of the platform, so its lever grows while the payload turns: by about the angle times the
 distance of the spring, which must be small beside the moment.
+
+A rocket whose front button has left turns about its rear one, at the distance d behind the mass centre::
+
+    w_y' = (M_y - d (F_z + m g_z)) / (J_yy + m d^2),      w_z' = (M_z + d (F_y + m g_y)) / (J_zz + m d^2)
+
+with moment M of the thrust about the mass centre and its forces F across the rail. The rear button is a pin
+without play, and the slot holds the roll. This is the rate at exit.
 """
 
 import math
@@ -15,9 +22,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
+from tipoff.mechanics.absent import offset as thrust_offset
 from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.mechanics.outcome import relative_motion
+from tipoff.results import guides
 from tipoff.scenes import launch, scene_model
 from tipoff.scenes.scene import Scene
 
@@ -42,23 +51,32 @@ class ByHand(NamedTuple):
 
 
 def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
-    """Rates of a settled ``run`` of ``scene`` by hand; None if more than one pad touches in its
-    samples, if the payload turns so far on its springs that their levers change, or if it did not
-    settle."""
+    """Rates of a settled ``run`` of ``scene`` by hand; None for the reason ``why_not``."""
+    found = _rates(scene, run)
+    return found if isinstance(found, ByHand) else None
+
+
+def why_not(scene: Scene, run: "Trajectory") -> str:
+    """Why ``rates`` are None; empty if they are not."""
+    found = _rates(scene, run)
+    return found if isinstance(found, str) else ""
+
+
+def _rates(scene: Scene, run: "Trajectory") -> ByHand | str:
     if run.outcome.rate is None:
-        return None
+        return "the run did not settle"
     model = scene_model.build(scene)
     touching = np.flatnonzero((run.pad_force != 0.0).any(axis=(0, 2)))
     pads = sorted(set(model.faces.pad[touching].tolist()))
     if len(pads) > 1:
-        return None
+        return f"{len(pads)} pads touch, and each one changes what the others do"
     moment = np.zeros(3)
     if model.pushers is not None:
         pushes, impulses = model.pushers, ends.spring_impulses(launch.of_scene(scene))
         moment += impulses @ np.cross(pushes.point, pushes.direction)
         grown = _turned(run, pushes.travel.max()) * impulses @ np.linalg.norm(pushes.point, axis=1)
         if grown > _GROWTH * np.linalg.norm(moment):
-            return None
+            return "the payload turns so far on its springs that their levers change"
     elif model.thrust_offset is not None:
         offset, impulse = model.thrust_offset, thrust_law.impulse(model.thrust, scene.time_limit)
         moment += impulse * np.cross(offset.arm, offset.direction)
@@ -68,6 +86,45 @@ def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
         moment += np.cross(model.faces.centre[face], np.trapezoid(force, run.time, axis=0))
     begun = np.array(model.initial.rate)
     return ByHand(begun + model.payload.inverse_inertia @ moment, pads[0] if pads else None)
+
+
+class Pinned(NamedTuple):
+    """Rates of a rocket at exit, by hand."""
+
+    rate: np.ndarray  # (3,) rad/s, in body axes
+
+    @property
+    def words(self) -> str:
+        """The assumptions."""
+        return "a rigid rocket turns about its rear button after the front one left, without play and roll"
+
+
+def pinned(scene: Scene, run: "Trajectory") -> Pinned | str:
+    """Rates at exit of a rocket on two buttons that turns about the rear one; or why it has none."""
+    buttons = [guide for guide in guides.of(scene, run) if guide.name.startswith("button")]
+    if len(buttons) != 2 or scene.platform is not None:
+        return "the rocket has not two buttons on fixed rails"
+    rear, front = sorted(buttons, key=lambda each: each.place_m[0])
+    if rear.leaves_s is None or front.leaves_s is None:
+        return "a button stays on the rail"
+    model = scene_model.build(scene)
+    distance = -(rear.place_m[0] - model.payload.mass_centre[0])
+    if not distance > 0.0:
+        return "the rear button is in front of the mass centre"
+    offset, body, mass = (
+        thrust_offset(model.thrust_offset),
+        model.payload.inertia,
+        model.payload.mass,
+    )
+    impulse = thrust_law.impulse(model.thrust, rear.leaves_s)
+    impulse -= thrust_law.impulse(model.thrust, front.leaves_s)
+    moment = impulse * np.cross(offset.arm, offset.direction)
+    force = impulse * np.array(offset.direction)
+    if model.body_force is not None:
+        force += mass * (rear.leaves_s - front.leaves_s) * np.array(model.body_force)
+    about_pin = np.diag(body) + mass * distance**2
+    turning = np.array([0.0, moment[1] - distance * force[2], moment[2] + distance * force[1]])
+    return Pinned(turning / about_pin)
 
 
 def _turned(run: "Trajectory", stroke: float) -> float:

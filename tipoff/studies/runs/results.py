@@ -62,7 +62,8 @@ def transverse(rate: Sequence[float]) -> float:
 class ConditionRun:
     """One run. ``settled`` is None if it did not settle; ``at_exit`` is None for the reason
     ``no_exit_values``; ``impulse_after_exit`` is a share, None without exit or thrust; ``advice``
-    is empty unless the run ended too early; ``by_hand`` is None if more than one pad touches;
+    is empty unless the run ended too early; ``by_hand`` is None for the reason ``no_by_hand``;
+    ``by_hand_at_exit``: of a rocket on two buttons;
     ``guides``: its buttons, or pads; ``rail_compliance``: its statement about its elements;
     ``trajectory``: the file in the folder of the scene. Only the reference has the fields from
     ``elements`` on; stresses are None for a run without stresses."""
@@ -92,6 +93,8 @@ class ConditionRun:
     thrust: dict[str, Any] | None = None  # acting forces
     rail_compliance: dict[str, Any] | None = None
     by_hand: ByHand | None = None
+    no_by_hand: str = ""
+    by_hand_at_exit: ByHand | None = None
     guides: tuple[Guide, ...] = ()
     elements: int | None = None
     ns_per_element_step: float | None = None  # of all elements, those of rails at rest included

@@ -138,10 +138,15 @@ def _vector(found: Iterable[float]) -> Vector:
 
 def _beside(request: Run, found: Trajectory) -> dict[str, Any]:
     hand = hand_calculation.rates(request.scene, found)
+    pinned = hand_calculation.pinned(request.scene, found)
     return {
         "advice": unfinished.advice(request.scene, found),
         "thrust": request.scene.thrust.describe(request.scene.time_limit),
         "rail_compliance": request.compliance and request.compliance.stated(),
+        "no_by_hand": hand_calculation.why_not(request.scene, found),
+        "by_hand_at_exit": None
+        if isinstance(pinned, str)
+        else ByHand(_vector(map(math.degrees, pinned.rate)), pinned.words),
         "guides": guides.of(request.scene, found),
         "by_hand": hand and ByHand(_vector(map(math.degrees, hand.rate)), hand.words),
     }

@@ -13,7 +13,7 @@ from tipoff.scenes import launch
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.render.uncertain import number, range_of, rounded, uncertain
-from tipoff.studies.runs.results import ConditionRun
+from tipoff.studies.runs.results import ByHand, ConditionRun
 from tipoff.units import duration
 from tipoff.workspace import disturbed, model_error
 from tipoff.workspace.disturbed import Disturbed
@@ -121,6 +121,7 @@ def _answer(row: Single, every: bool) -> list[str]:
         text += [
             f"  velocity      {_vector(found.velocity_m_s)} m/s (x, y, z){where}",
             *_rates(row, found.rate_deg_s, where),
+            *([] if not every else _by_hand_at_exit(row)),
             *([] if at_exit or not every else _by_hand(row)),
             f"  direction     {found.direction_error_deg:.4g} deg off axis, "
             f"{1e3 * found.lateral_velocity_m_s:.4g} mm/s across",
@@ -198,11 +199,20 @@ def _of_guide(guide: Guide) -> list[str]:
 
 
 def _by_hand(row: ConditionRun) -> list[str]:
-    """The settled rates by hand."""
+    """The settled rates by hand, or why there are none."""
     if row.by_hand is None:
-        return []
-    rates = ", ".join(map(uncertain, row.by_hand.rate_deg_s))
-    return [f"  by hand       {rates} deg/s: {row.by_hand.words}"]
+        return [f"  by hand       not valid: {row.no_by_hand}"] if row.no_by_hand else []
+    return [_hand_line(row.by_hand)]
+
+
+def _by_hand_at_exit(row: ConditionRun) -> list[str]:
+    """The rates at exit of a rocket by hand."""
+    return [] if row.by_hand_at_exit is None else [f"{_hand_line(row.by_hand_at_exit)}, at exit"]
+
+
+def _hand_line(found: ByHand) -> str:
+    rates = ", ".join(map(uncertain, found.rate_deg_s))
+    return f"  by hand       {rates} deg/s: {found.words}"
 
 
 def _at_exit(row: ConditionRun) -> list[str]:
