@@ -57,7 +57,7 @@ def sheet(**launch) -> LaunchSheet:
         "columns": {"time": "t", "rate": ["x", "y", "z"], "acceleration": ["a", "b", "c"]},
         "units": {"time": "s", "rate": "rad/s", "acceleration": "m/s**2"},
         "gyro": {"range": 35.0, "resolution": 0.0, "uncertainty": sure},
-        "accelerometer": {"range": 1000.0, "scale_uncertainty": SCALE},
+        "accelerometer": {"range": 1e5, "scale_uncertainty": SCALE},
         "launch": {
             "travel_uncertainty": TRAVEL,
             "delay_uncertainty": DELAY,
@@ -85,7 +85,7 @@ def log(run: Trajectory, gravity: np.ndarray, errors: Errors, seed: int, rough: 
     unit = Sensor(
         Channel(errors.bias, np.full(3, errors.scale[0]), NOISE * np.sqrt(1e-3), 0.0, 35.0),
         Channel(
-            errors.force_bias, np.full(3, errors.scale[1]), FORCE_NOISE * np.sqrt(1e-3), 0.0, 1000.0
+            errors.force_bias, np.full(3, errors.scale[1]), FORCE_NOISE * np.sqrt(1e-3), 0.0, 1e5
         ),
         np.zeros((3, 3)),
         np.zeros((3, 3)),

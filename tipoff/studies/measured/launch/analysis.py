@@ -26,7 +26,7 @@ from tipoff.studies.measured.sheet import LaunchSheet
 from tipoff.units import duration
 
 _GUARD = 5.0  # intervals between the window at rest and the start
-_LASTING = 0.02  # s of the rise at the start
+_LASTING = 5e-3  # s of the rise at the start
 _FEWEST = 5  # samples after the exit
 _NORMAL = float(scipy.stats.norm.ppf(0.5 + 0.5 * COVERAGE))
 _APART = 3.0  # standard uncertainties
