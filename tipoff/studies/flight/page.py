@@ -205,17 +205,11 @@ def _exceeded(
 ) -> list[Line]:
     """Share of cases above each value, and bounds of the quantiles."""
     above = [100.0 * (1.0 - (index + 1) / len(values)) for index in range(len(values))]
-    bounds = [
-        Line(
-            [row.low, row.high],
-            [100.0 * (1.0 - row.share)] * 2,
-            *("bounds", VERMILION, 2.5),
-            marker="D",
-            size=5.0,
-        )
-        for row in many.quantiles.get(name, ())
-        if row.low is not None and row.high is not None
-    ]
+    bounds = []
+    for row in many.quantiles.get(name, ()):
+        if row.low is not None and row.high is not None:
+            ends, share = [row.low, row.high], [100.0 * (1.0 - row.share)] * 2
+            bounds.append(Line(ends, share, "bounds", VERMILION, 2.5, marker="D", size=5.0))
     return [Line(sorted(values), above, words, colour, 2.0, dash), *bounds]
 
 

@@ -10,9 +10,9 @@ from tipoff.studies.limits.results import Advised, CertifiedFactor, Limits, Map
 from tipoff.studies.limits.search import ALL, FOUND, LOST, NONE, SMALL, Found
 from tipoff.studies.limits.within import TOGETHER
 from tipoff.studies.populations import exceedance, population
-from tipoff.studies.render.chart import Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel, marks
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
-from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
+from tipoff.studies.render.palette import AMBER, GREY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, estimate, percent, span
 from tipoff.workspace.words import counted
 
@@ -231,35 +231,17 @@ def _panel(row: CertifiedFactor, found: Limits) -> Panel:
     upper = [exceedance.at_most(count, found.cases, found.confidence) for _, count in trials]
     ends = [min(upper + shares), 1.0]
     lines = [
-        Line(
-            [size for size, _ in seen],
-            shares,
-            name="share of cases above",
-            colour=NAVY,
-            marker="o",
-            size=5.0,
-        ),
-        Line(sizes, upper, name="its upper bound", colour=TEAL, dash=":"),
-        Line(
-            [sizes[0], sizes[-1]],
-            [1.0 - found.probability] * 2,
-            name="1 - p",
-            colour=GREY,
-            width=1.2,
-            dash="-.",
-        ),
+        Line([size for size, _ in seen], shares, "share of cases above", marker="o", size=5.0),
+        Line(sizes, upper, "its upper bound", TEAL, dash=":"),
+        Line([sizes[0], sizes[-1]], [1.0 - found.probability] * 2, "1 - p", GREY, 1.2, "-."),
     ]
     if (most := row.nominal.tolerance) is not None:
-        lines.append(Line([most] * 2, ends, name="largest certified", colour=VERMILION, width=1.8))
+        lines.append(Line([most] * 2, ends, "largest certified", VERMILION, 1.8))
     if row.advised and sizes[0] <= (advice := row.advised.tolerance) <= sizes[-1]:
-        lines.append(
-            Line(
-                [advice] * 2, ends, name="advised by the paper", colour=AMBER, width=1.8, dash="--"
-            )
-        )
+        lines.append(Line([advice] * 2, ends, "advised by the paper", AMBER, 1.8, "--"))
     title = row.words.partition(",")[0]
     unit = "times the set" if row.name == TOGETHER else row.unit.replace("1", "dimensionless")
-    return Panel(title, f"tolerance ({unit})", y_label="share above a limit", lines=lines, log=True)
+    return Panel(title, f"tolerance ({unit})", "share above a limit", lines, log=True)
 
 
 def _map(shown: Map, probability: float) -> Chart:
@@ -267,10 +249,8 @@ def _map(shown: Map, probability: float) -> Chart:
     (at_x, at_y), advised = shown.advised, "advised by the paper"
     certified = f"largest certified pairs, p = {probability:g}"
     lines = [
-        Line(x, y, name=certified, colour=NAVY, width=1.8, marker="o", size=7.0),
-        Line([at_x], [at_y], name=advised, colour=VERMILION, dash="", marker="s", size=10.0),
+        Line(x, y, certified, width=1.8, marker="o", size=7.0),
+        marks([at_x], [at_y], advised, VERMILION, "s", size=10.0),
     ]
-    x_label, y_label = (
-        f"tolerance of {name} ({unit})" for name, unit in zip(shown.words, shown.units)
-    )
-    return Chart("limits-map", [Panel("", x_label, y_label=y_label, lines=lines)], height=380)
+    across, up = (f"tolerance of {name} ({unit})" for name, unit in zip(shown.words, shown.units))
+    return Chart("limits-map", [Panel("", across, up, lines)], height=380)

@@ -10,7 +10,7 @@ from tipoff.studies.measured.judgement import MAGNITUDES
 from tipoff.studies.measured.launch import page as launches
 from tipoff.studies.measured.results import Cases, Compared, Launch, Measurements, Row
 from tipoff.studies.populations import answers, population, spread
-from tipoff.studies.render.chart import Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel, marks
 from tipoff.studies.render.document import Bullets, Figure, Fold, Notice, Part
 from tipoff.studies.render.palette import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Noted, Table, estimate, percent
@@ -117,26 +117,13 @@ def _rates(row: Row) -> list[Panel]:
     ):
         near = (time >= begin) & (time <= end)
         low, high = rate[near].min(), rate[near].max()
+        curves = zip(rate[near].T, AXIS_COLOURS, AXIS_COLOURS.values(), _DASHES.values())
         lines = [
-            Line(
-                factor * time[near],
-                rate[near, place],
-                name=f"rate about {axis.upper()}",
-                colour=colour,
-                width=1.4,
-                dash=_DASHES[axis],
-            )
-            for place, (axis, colour) in enumerate(AXIS_COLOURS.items())
+            Line(factor * time[near], values, f"rate about {axis.upper()}", colour, 1.4, dash)
+            for values, axis, colour, dash in curves
         ]
         lines += [
-            Line(
-                [factor * at] * 2,
-                [low, high],
-                name="release, ignition",
-                colour=GREY,
-                width=1.6,
-                dash=":",
-            )
+            Line([factor * at] * 2, [low, high], "release, ignition", GREY, dash=":")
             for at in (row.release_s - ignition, 0.0)
             if begin <= at <= end
         ]
@@ -146,13 +133,7 @@ def _rates(row: Row) -> list[Panel]:
             if b > begin and a < end
         )
         panels.append(
-            Panel(
-                words,
-                f"time after ignition ({unit})",
-                y_label="rate (deg/s)",
-                lines=lines,
-                spans=spans,
-            )
+            Panel(words, f"time after ignition ({unit})", "rate (deg/s)", lines, spans=spans)
         )
     return panels
 
@@ -167,7 +148,7 @@ def _clouds(found: Compared) -> list[Panel]:
         if region.squared_radius is not None:
             words = f"{100.0 * region.share:g} % prediction region"
             edge = judgement.outline(region)
-            lines.append(Line(edge[:, 0], edge[:, 1], name=words, colour=NAVY, width=1.8))
+            lines.append(Line(edge[:, 0], edge[:, 1], words, width=1.8))
         lines += _tests(
             found,
             [
@@ -176,37 +157,21 @@ def _clouds(found: Compared) -> list[Panel]:
             ],
         )
         first, second = (f"rate about {axis.upper()} (deg/s)" for axis in region.components)
-        panels.append(Panel("", first, y_label=second, lines=lines))
+        panels.append(Panel("", first, second, lines))
     sizes = judgement.magnitudes(cases)[:, :2]
-    marks = _tests(
+    tests = _tests(
         found,
         [
             ([row.magnitudes[name].value_deg_s for name in MAGNITUDES[:2]], (0.0, 0.0))
             for row in found.tests
         ],
     )
-    return [
-        *panels,
-        Panel(
-            "",
-            "|rate about X| (deg/s)",
-            y_label="rate across X (deg/s)",
-            lines=[_dots(sizes), *marks],
-        ),
-    ]
+    axes = "|rate about X| (deg/s)", "rate across X (deg/s)"
+    return [*panels, Panel("", *axes, [_dots(sizes), *tests])]
 
 
 def _dots(points: np.ndarray) -> Line:
-    return Line(
-        points[:, 0],
-        points[:, 1],
-        name="simulated cases",
-        colour=GREY,
-        dash="",
-        marker="o",
-        size=3.0,
-        opacity=0.45,
-    )
+    return marks(points[:, 0], points[:, 1], "simulated cases", GREY, size=3.0, opacity=0.45)
 
 
 def _tests(found: Compared, places: Sequence[tuple]) -> list[Line]:
@@ -215,11 +180,11 @@ def _tests(found: Compared, places: Sequence[tuple]) -> list[Line]:
     for number_, (row, ((x, y), (dx, dy))) in enumerate(zip(found.tests, places)):
         colour, marker = _LOOKS[number_ % len(_LOOKS)]
         lines += [
-            Line(*bar, name="", colour=colour, width=1.6, legend=False)
+            Line(*bar, "", colour, legend=False)
             for bar in (([x - dx, x + dx], [y, y]), ([x, x], [y - dy, y + dy]))
         ]
         name = f"{row.test}{' (SIMULATED)' if row.simulated else ''}"
-        lines.append(Line([x], [y], name=name, colour=colour, dash="", marker=marker, size=10.0))
+        lines.append(marks([x], [y], name, colour, marker, size=10.0))
     return lines
 
 

@@ -324,17 +324,9 @@ def _convergence(sobol: Sobol, rates: _Indexed) -> Chart:
         steps = [(step.base_points, step.total) for step in item.convergence if step.total]
         points = [count for count, _ in steps]
         names = [name_of(each.key) for each in sobol.inputs]
-        lines = [
-            Line(
-                points,
-                [total[n] for _, total in steps],
-                name=names[n],
-                colour=colour,
-                width=1.6,
-                dash=dash,
-                marker=marker,
-            )
-            for n, (colour, dash, marker) in zip(order, _LINES)
-        ]
-        panels.append(Panel(item.label, "base points", y_label="total Sobol' index", lines=lines))
+        lines = []
+        for n, (colour, dash, marker) in zip(order, _LINES):
+            totals = [total[n] for _, total in steps]
+            lines.append(Line(points, totals, names[n], colour, dash=dash, marker=marker))
+        panels.append(Panel(item.label, "base points", "total Sobol' index", lines))
     return Chart("sensitivity-convergence", panels, columns=2, height=280)

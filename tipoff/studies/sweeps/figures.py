@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tipoff.studies.render.chart import Chart, Line, Panel, Picture
+from tipoff.studies.render.chart import Chart, Line, Panel, Picture, marks
 from tipoff.studies.render.document import Figure
 from tipoff.studies.render.palette import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL
 from tipoff.studies.sweeps.results import Launch, Sides, Sweeps, Swept
@@ -80,11 +80,11 @@ def _scatter(factor: Swept) -> Chart:
             (over_angle, angle, 180.0 / len(angles)),
         ):
             shifted = x.ravel()[settled] + (place - 1) * _APART * step
-            line = shifted, rates[settled], f"rate about {axis}", AXIS_COLOURS[axis]
-            lines.append(Line(*line, dash="", opacity=0.65, marker=marker, size=3.5))
+            point = shifted, rates[settled], f"rate about {axis}", AXIS_COLOURS[axis], marker
+            lines.append(marks(*point, opacity=0.65, size=3.5))
     direction = f"direction {_ANGLE[factor.name].split(',')[0]} (deg)"
     panels = [
-        Panel("", label, y_label="rate (deg/s)", lines=lines)
+        Panel("", label, "rate (deg/s)", lines)
         for label, lines in ((factor.title, over_size), (direction, over_angle))
     ]
     return Chart(f"sweep-{factor.name}", panels, columns=2, height=330)
@@ -100,18 +100,8 @@ def _grown(launch: Launch, factor: Swept) -> Panel:
     for name, (axis, marker, dash) in _LOOKS.items():
         values = [np.nan if value is None else value for value in factor.largest[name]]
         top = max(top, np.nanmax(values, initial=0.0))
-        lines.append(
-            Line(
-                sizes,
-                values,
-                name=f"about {axis}",
-                colour=AXIS_COLOURS[axis],
-                width=1.4,
-                dash=dash,
-                marker=marker,
-                size=6.0,
-            )
-        )
+        look = AXIS_COLOURS[axis], 1.4, dash
+        lines.append(Line(sizes, values, f"about {axis}", *look, marker=marker, size=6.0))
         bent = factor.growth[name]
         if axis == "x" or bent is None or bent.verdict != "plateau":
             continue
@@ -122,19 +112,8 @@ def _grown(launch: Launch, factor: Swept) -> Panel:
         # a free payload may rotate much faster, which would flatten the other lines
         shown = free <= 1.15 * top
         place, named = (np.array(sizes)[shown], free[shown]), axis == "y"
-        lines.append(
-            Line(*place, name="free payload", colour=GREY, width=0.9, dash=dash, legend=named)
-        )
-    lines.append(
-        Line(
-            [factor.paper] * 2,
-            [0.0, top],
-            name="the paper's plateau",
-            colour=GREY,
-            width=1.6,
-            dash=":",
-        )
-    )
+        lines.append(Line(*place, "free payload", GREY, 0.9, dash, legend=named))
+    lines.append(Line([factor.paper] * 2, [0.0, top], "the paper's plateau", GREY, dash=":"))
     how = "as given" if launch.stretch == 1.0 else f"thrust x {launch.stretch:g} as long"
     title, size = f"{factor.label}, {how}", f"size ({factor.unit})"
     return Panel(title, size, y_label="largest rate (deg/s)", lines=lines, spans=tuple(spans))
