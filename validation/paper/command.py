@@ -33,4 +33,4 @@ def paper(
     from validation.paper import page, stage
 
     found = stage.run(request.study(), stage.Options(starts))
-    return Output.of(found, page.terminal, request.out)
+    return Output.of(found, page.draw, request.out)

@@ -1,5 +1,4 @@
-"""The paper's numbers on the page and in the terminal: its Table 2 and speed-up beside our values, and
-the inferred inputs."""
+"""The paper's numbers: its Table 2 and speed-up beside our values, and the inferred inputs."""
 
 import numpy as np
 
@@ -63,17 +62,6 @@ def draw(found: dict) -> list[Part]:
         table_of_inputs(found),
         Fold("Reasons for the bounds", [_reasons(found["inputs"])]),
         Fold("All searches", [_searches(found["searches"])]),
-        *_headline(found),
-        Bullets(found["slips"]),
-    ]
-
-
-def terminal(found: dict) -> list[Part]:
-    """The tables of the best set, its inputs and its exit state, and the names of the files."""
-    return [
-        _fit(found),
-        table_of_inputs(found),
-        table_at_exit(found["exit"]),
         *_headline(found),
         Bullets(found["slips"]),
         f"Scene {found['scene_file']}, data {found['data']}.",

@@ -70,4 +70,4 @@ def page(found: dict) -> str:
 
 def shown(found: dict) -> str:
     """What the command prints of a result."""
-    return document.terminal(section.terminal(found))
+    return document.terminal(section.draw(found))
