@@ -114,7 +114,7 @@ def test_wrong_arguments_are_faults_with_their_name(name):
 @pytest.mark.parametrize("given", ["rate", 3.0, []], ids=repr)
 def test_other_axes_are_a_type_error(given):
     with pytest.raises(TypeError, match="axes: given a .*expected axes of matplotlib"):
-        TINY.plot(given)
+        TINY.plot("thrust", given)
 
 
 @pytest.mark.parametrize("load", [tipoff.RailCompliance.load, tipoff.Trajectory.load])

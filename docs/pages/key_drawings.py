@@ -8,8 +8,8 @@ import math
 from collections.abc import Callable
 
 import tipoff
-from tipoff.studies.render.sketch import HEIGHT, WIDTH, View, svg
-from tipoff.studies.report.drawing import end_view, halves, rail_corner, side_view, thickness
+from tipoff.scenes.drawing import end_view, halves, rail_corner, side_view, thickness
+from tipoff.sketch import HEIGHT, WIDTH, View, svg
 
 _SCENE = tipoff.load("reference")
 _FILLET = 0.004  # m, as drawn

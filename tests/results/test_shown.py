@@ -132,7 +132,7 @@ def test_plots_have_units_and_leave_no_global_state(run):
 
 def test_the_plot_of_a_scene_is_its_thrust():
     scene = load("tiny")
-    line = scene.plot().axes[0].get_lines()[0]
+    line = scene.plot("thrust").axes[0].get_lines()[0]
     force, time = line.get_ydata(), line.get_xdata()
     peak, width, centre = scene.thrust.peak, scene.thrust.width, scene.thrust.centre
     expected = peak * np.exp(-0.5 * ((1e-3 * time - centre) / width) ** 2)

@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import tipoff.toml
-from tipoff.scenes import SceneError, load, parse, provenance
+from tipoff.scenes import SceneError, drawing, load, parse, provenance
 from tipoff.scenes.variation import Variations
 from tipoff.studies.cli import app
 
@@ -176,16 +176,40 @@ def test_a_mass_centre_without_an_origin_is_refused():
         parse(tables)
 
 
-def test_the_command_prints_the_pads_of_a_scene(tmp_path):
-    """As a file that is the same scene, and of a file of the user too."""
-    found = CliRunner().invoke(app, ["scenes", "--show", "rocket_rail", "--pads"])
-    assert found.exit_code == 0, found.output
-    raw, own = tomllib.loads(found.stdout), load("rocket_rail")
-    assert len(raw["pads"]) == 12 and "buttons" not in raw and raw["rail"]["at"][1] == "-63.25 mm"
-    assert parse(raw).hash == own.hash
-    path = tmp_path / "mine.toml"
+def test_the_command_writes_out_and_draws_a_file(tmp_path):
+    """As a file that is the same scene; one of the catalogue stays as it was written."""
+    path, picture = tmp_path / "mine.toml", tmp_path / "mine.png"
     path.write_text(tipoff.toml.dumps(ROCKET))
-    found = CliRunner().invoke(app, ["scenes", "--show", str(path), "--pads"])
-    assert parse(tomllib.loads(found.stdout)).hash == rocket().hash
-    wrong = CliRunner().invoke(app, ["scenes", "--pads"])
-    assert wrong.exit_code == 2 and "--show" in wrong.stderr
+    found = CliRunner().invoke(app, ["scenes", "--show", str(path)])
+    assert found.exit_code == 0, found.output
+    raw = tomllib.loads(found.stdout)
+    assert len(raw["pads"]) == 12 and "buttons" not in raw and len(raw["pads"][0]["foot"]) == 3
+    assert parse(raw).hash == rocket().hash
+    found = CliRunner().invoke(app, ["scenes", "--show", "rocket_rail"])
+    assert "buttons" in tomllib.loads(found.stdout)
+    found = CliRunner().invoke(app, ["scenes", "--show", str(path), "--draw", str(picture)])
+    assert found.exit_code == 0 and picture.read_bytes().startswith(b"\x89PNG")
+    for wrong, words in (
+        (["--draw", "a.png"], "--show"),
+        (["--show", "tiny", "--draw", "a.txt"], ".png"),
+        (["--pads"], "no longer one: --show FILE.toml writes out"),
+    ):
+        found = CliRunner().invoke(app, ["scenes", *wrong])
+        assert found.exit_code == 2 and words in found.stderr
+
+
+def test_a_rocket_is_drawn_from_its_tail_to_its_nose_beside_its_rail():
+    """Its mass centre is not in the middle. Control: a body without an origin has it there."""
+    scene = rocket()
+    tail, nose = drawing.ends(scene)
+    assert nose - tail == pytest.approx(scene.payload.length)
+    assert tail == pytest.approx(-scene.thrust.arm)  # the nozzle is at the tail
+    assert drawing.height(scene) == 2 and drawing.height(load("reference")) == 1
+    low, high = drawing.ends(load("rocket_rail"))
+    assert low == -high
+    figure = scene.plot()
+    texts = [text.get_text() for axes in figure.axes for text in axes.texts]
+    assert {"button 1", "button 2", "mass centre", "thrust", "Z"} <= set(texts)
+    assert any(words.startswith("play of each pad") for words in texts)
+    with pytest.raises(ValueError, match="expected launcher or thrust"):
+        scene.plot("rail")

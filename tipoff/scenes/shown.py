@@ -34,22 +34,35 @@ class Shown(Carded):
     def _facts(self: Any) -> dict[str, str]:
         return facts(self)
 
-    def plot(self: Any, axes: Any = None) -> "Figure":
-        """Draw the thrust (N) over the time after ignition (ms); that of springs for a payload
-        without friction on its rails.
+    def plot(self: Any, quantity: str = "launcher", axes: Any = None) -> "Figure":
+        """Draw the launcher to scale, from the side and from its open end: payload, pads, rails, mounts, mass
+        centre and line of the thrust. Or draw the thrust (N) over the time after ignition (ms); that of
+        springs for a payload without friction on its rails.
 
         Args:
-            axes: matplotlib axes to draw in; a new figure by default.
+            quantity: ``launcher`` or ``thrust``.
+            axes: matplotlib axes for the thrust; a new figure by default.
 
         Returns:
             Figure: the figure. pyplot does not know a new one; a notebook shows it.
 
+        Raises:
+            ValueError: another quantity.
+
         Example:
-            >>> figure = tipoff.load("tiny").plot()
-            >>> figure.axes[0].get_ylabel()
+            >>> scene = tipoff.load("tiny")
+            >>> len(scene.plot().axes)
+            2
+            >>> scene.plot("thrust").axes[0].get_ylabel()
             'thrust (N)'
         """
         from tipoff import plots  # slow to load
+        from tipoff.scenes import drawing
+
+        if quantity == "launcher" and axes is None:
+            return drawing.figure(self)
+        if quantity != "thrust":
+            raise ValueError(f"quantity: given {quantity!r}, expected launcher or thrust")
 
         time = np.linspace(0.0, self.expected_end, _PLOTTED)
         force = thrust_law.sample(ends.over_time(launch.of_scene(self)), time)

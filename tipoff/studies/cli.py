@@ -8,6 +8,7 @@ that it needs, so that ``--help`` is fast.
 import inspect
 import json
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -40,6 +41,7 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit()
 
 
+_PICTURES = (".png", ".svg", ".pdf")
 # Former names of commands, and what a user types now.
 RENAMED = {
     "droptest": "measured",
@@ -83,17 +85,20 @@ def scenes(
     show: Annotated[
         str | None,
         typer.Option(
-            "--show", metavar="NAME", help="Print the file of this scene, for a changed copy."
+            "--show",
+            metavar="NAME_OR_FILE",
+            help="Print the file of this scene, for a changed copy; of a file of yours, all that follows from "
+            "its buttons, its origin and its body, as if written by hand.",
         ),
     ] = None,
-    pads: Annotated[
-        bool,
+    draw: Annotated[
+        Path | None,
         typer.Option(
-            "--pads",
-            help="With --show NAME or FILE.toml: write out what follows from its buttons, its origin and its "
-            "body, as if written by hand.",
+            "--draw",
+            metavar="FILE.png",
+            help="With --show: draw the launcher to scale instead, from the side and from its open end.",
         ),
-    ] = False,
+    ] = None,
     schema: Annotated[
         bool,
         typer.Option(
@@ -107,7 +112,7 @@ def scenes(
     """List the scenes of the catalogue: name, number of conditions, description.
 
       tipoff scenes --show reference > my_launcher.toml
-      tipoff scenes --show my_rocket.toml --pads
+      tipoff scenes --show my_rocket.toml --draw my_rocket.png
       tipoff scenes --schema > tipoff.schema.json
 
     An editor with Even Better TOML or taplo uses the schema if a file begins with the line
@@ -117,9 +122,11 @@ def scenes(
     def work() -> Output:
         from tipoff import toml
         from tipoff.faults import Fault, SceneError, close
+        from tipoff.files import replacing
         from tipoff.scenes import catalog, load
         from tipoff.scenes.scene import CATALOG
         from tipoff.scenes.schema import schema as rules
+        from tipoff.workspace.progress import say
 
         if schema:
             if show is not None:
@@ -127,9 +134,17 @@ def scenes(
             return Output(
                 {"schema": rules()}, lambda found: [json.dumps(found["schema"], indent=1)]
             )
-        if pads:
+        if draw is not None:
             if show is None:
-                raise SceneError([Fault("--pads", "option", "no --show", "a scene to write out")])
+                raise SceneError([Fault("--draw", "option", "no --show", "a scene to draw")])
+            if draw.suffix not in _PICTURES:
+                words = f"a file that ends with {', '.join(_PICTURES)}"
+                raise SceneError([Fault("--draw", "file", str(draw), words)])
+            with replacing(draw) as path:
+                load(show).plot().savefig(path, format=draw.suffix[1:], dpi=150)
+            say(f"the launcher: {draw}")
+            return Output({"scene": show, "drawing": str(draw)})
+        if show is not None and (show.endswith(".toml") or Path(show).is_file()):
             text = toml.dumps(load(show).written_out())
             if not json_:
                 print(text, end="")
@@ -173,6 +188,7 @@ def flowed(text: str) -> str:
 
 _IN_THE_FILE = "the file of errors states it, as its key {0}: --vary FILE"
 _MOVED = {
+    ("scenes", "--pads"): "--show FILE.toml writes out all that follows from the parts of a scene",
     ("ensemble", "--seed"): _IN_THE_FILE.format("seed"),
     ("ensemble", "--sampling"): _IN_THE_FILE.format("sampling"),
 }

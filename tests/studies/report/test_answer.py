@@ -12,9 +12,10 @@ from tests.studies.convergence import stub
 from tests.studies.shown import Documents, html
 from tests.studies.synthetic import COSTS, flight
 from tipoff import scenes
+from tipoff.scenes import drawing
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.populations.exceedance import Limit
-from tipoff.studies.report import answer, drawing
+from tipoff.studies.report import answer
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.stage import row

@@ -20,7 +20,7 @@ _INCLINATION, _ERROR = 85.0, 0.5  # deg
 
 _TEXT = """\
 # A rocket with two rail buttons. Places count from its tail: write yours. provenance says what is given and assumed.
-# "tipoff scenes --show {name}.toml --pads" writes out pads, profile, inertia and all else that follows.
+# "tipoff scenes --show {name}.toml" writes out pads, profile, inertia and all else that follows.
 name = {named}
 origin = "tail"
 gravity = {{ inclination = "{inclination:g} deg" }}  # of the rail

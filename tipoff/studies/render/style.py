@@ -68,6 +68,7 @@ footer { max-width: 1240px; margin: 60px auto 40px; padding: 0 28px; color: var(
 .drawing .payload { fill: var(--tint); stroke: var(--soft); } .drawing .rail { fill: var(--soft); }
 .drawing .mount { fill: var(--ink); } .drawing .pad { fill: #e8a33d; stroke: #8c6d46; stroke-width: .6; }
 .drawing line, .drawing path { fill: none; stroke-width: 1.6; stroke: var(--accent); }
+.drawing .dot { fill: var(--ink); stroke: none; } .drawing path.payload { stroke: var(--soft); }
 .drawing path.tip { fill: context-stroke; stroke: none; }
 .drawing .thrust { stroke: #d1495b; stroke-width: 3; } .drawing .tilt { stroke: #d1495b; stroke-width: 2.4; }
 .drawing .shift { stroke: #2e8b7a; stroke-width: 2.4; stroke-dasharray: 5 3; }

@@ -11,6 +11,7 @@ from markupsafe import Markup
 
 from tipoff.mechanics.instant import EXIT, Instant, chosen
 from tipoff.mechanics.instant import where as instant_words
+from tipoff.scenes import drawing
 from tipoff.scenes.overrides import is_drop
 from tipoff.studies.agreement import distribution_page, verdicts
 from tipoff.studies.agreement import stage as compare
@@ -32,7 +33,7 @@ from tipoff.studies.render.uncertain import (
     rounded,
     uncertain,
 )
-from tipoff.studies.report import drawing, trust
+from tipoff.studies.report import trust
 from tipoff.studies.runs.results import ConditionRun, Settled, roll, transverse
 from tipoff.workspace.words import counted
 

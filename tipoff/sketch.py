@@ -66,6 +66,13 @@ class View:
             f'marker-end="url(#tip)"/>'
         )
 
+    def line(self, begin: tuple[float, float], end: tuple[float, float], kind: str) -> None:
+        """A line between two places (px)."""
+        (a, b), (c, d) = begin, end
+        self.shapes.append(
+            f'<line class="{kind}" x1="{a:.1f}" y1="{b:.1f}" x2="{c:.1f}" y2="{d:.1f}"/>'
+        )
+
     def arc(self, begin: float, end: float, radius: float, kind: str) -> None:
         """An arc with an arrow about the centre; angles (rad) from the first axis to the second,
         ``radius`` in px."""
