@@ -28,16 +28,20 @@ class Drawn:
         self.uncertainty = uncertainty
         self.asked, self.keys, self.identity = (
             uncertainty.cases,
-            list(uncertainty.vary),
+            list(uncertainty.overrides({key: [0.0] for key in uncertainty.vary})),
             uncertainty.resolved(),
         )
-        self._points, self._vary = Points(uncertainty), list(uncertainty.vary.values())
+        self._points = Points(uncertainty)
 
     def rows(self, begin: int, end: int) -> list[dict[str, float]]:
         """Overrides of the cases ``begin`` to ``end`` - 1, SI."""
         points = self._points.draw(begin, end)
-        columns = [item.ppf(column).tolist() for item, column in zip(self._vary, points.T)]
-        return [dict(zip(self.keys, values)) for values in zip(*columns)]
+        drawn = {
+            key: item.ppf(column).tolist()
+            for (key, item), column in zip(self.uncertainty.vary.items(), points.T)
+        }
+        columns = self.uncertainty.overrides(drawn)
+        return [dict(zip(columns, values)) for values in zip(*columns.values())]
 
 
 class Listed:

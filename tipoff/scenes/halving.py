@@ -9,14 +9,12 @@ import math
 
 import numpy as np
 
-from tipoff.scenes import overrides as keys
+from tipoff.scenes import polar
 from tipoff.scenes.distributions import Distribution, Fixed, Uniform, narrowed
 from tipoff.scenes.rounding import at_most
-from tipoff.scenes.scene import Scene
-from tipoff.scenes.uncertainty import Uncertainty
+from tipoff.scenes.uncertainty import Uncertainty, unit_of
 from tipoff.units import COMMON_FACTORS
 
-_OFFSETS = ("misalignment", "eccentricity")
 _HALF = 0.5
 _SPAN = 0.95  # share of the values between the ends of a range in words
 _SHOWN = {"rad": "deg", "m": "mm", "rad/s": "deg/s", "s": "ms"}
@@ -28,7 +26,7 @@ def tolerances(errors: Uncertainty) -> dict[str, tuple[str, ...]]:
     found: dict[str, tuple[str, ...]] = {}
     for key in errors.vary:
         table = key.rpartition(".")[0]
-        name = table if table.endswith(_OFFSETS) else key
+        name = table if table.endswith(polar.OFFSETS) else key
         found[name] = (*found.get(name, ()), key)
     return {
         name: own
@@ -67,18 +65,22 @@ def _whole_turn(item: Distribution) -> bool:
 def words(errors: Uncertainty, name: str) -> str:
     """The ranges that have 95 % of the values of a tolerance, with their units."""
     own = [key for key in tolerances(errors)[name] if not _whole_turn(errors.vary[key])]
-    shown = [_range(key, errors.vary[key]) for key in own]
+    shown = [_range(errors, key) for key in own]
     if len(own) == 1 or len(set(shown)) == 1:
         return shown[0]
     return ", ".join(f"{key.rpartition('.')[2]} {text}" for key, text in zip(own, shown))
 
 
-def _range(key: str, item: Distribution) -> str:
-    unit = keys.unit(Scene, key) or ""
+def _range(errors: Uncertainty, key: str) -> str:
+    item, unit = errors.vary[key], unit_of(key) or ""
+    if key in errors.factors:
+        unit = ""
     name = _SHOWN.get(unit, unit)
     factor = COMMON_FACTORS[unit][name] if name != unit else 1.0
     from_zero = key.endswith(".axial") and float(item.ppf(np.array(0.0))) == 0.0
     ends = (0.0, _SPAN) if from_zero else (0.5 - 0.5 * _SPAN, 0.5 + 0.5 * _SPAN)
     low, high = (float(item.ppf(np.array(share))) / factor for share in ends)
     text = f"{low:.3g}" if high - low <= 1e-12 * abs(high) else f"{low:.3g} to {high:.3g}"
+    if key in errors.factors:
+        return f"{text} times"
     return text if unit in ("", "dimensionless") else f"{text} {name}"

@@ -87,8 +87,8 @@ def scenes(
         typer.Option(
             "--show",
             metavar="NAME_OR_FILE",
-            help="Print the file of this scene, for a changed copy; of a file of yours, all that follows from "
-            "its buttons, its origin and its body, as if written by hand.",
+            help="Print the file of this scene, or of these errors, for a changed copy; of a file of yours, all "
+            "that follows from its buttons, its origin and its body, as if written by hand.",
         ),
     ] = None,
     draw: Annotated[
@@ -112,6 +112,7 @@ def scenes(
     """List the scenes of the catalogue: name, number of conditions, description.
 
       tipoff scenes --show reference > my_launcher.toml
+      tipoff scenes --show paper > my_errors.toml
       tipoff scenes --show my_rocket.toml --draw my_rocket.png
       tipoff scenes --schema > tipoff.schema.json
 
@@ -123,7 +124,7 @@ def scenes(
         from tipoff import toml
         from tipoff.faults import Fault, SceneError, close
         from tipoff.files import replacing
-        from tipoff.scenes import catalog, load
+        from tipoff.scenes import catalog, load, uncertainty
         from tipoff.scenes.scene import CATALOG
         from tipoff.scenes.schema import schema as rules
         from tipoff.workspace.progress import say
@@ -150,11 +151,15 @@ def scenes(
                 print(text, end="")
             return Output({"scene": show, "file": text})
         if show is not None:
-            if show not in catalog():
-                known = catalog()
+            scenes = {name: CATALOG / f"{name}.toml" for name in catalog()}
+            errors = {  # those of a scene have its name
+                f"vary/{path.stem}" if path.stem in scenes else path.stem: path
+                for path in sorted(uncertainty.CATALOG.glob("*.toml"))
+            }
+            if show not in (known := scenes | errors):
                 words = f"one of {', '.join(known)}{close(show, known)}"
-                raise SceneError([Fault("--show", "scene", show, words)])
-            text = (CATALOG / f"{show}.toml").read_text(encoding="utf-8")
+                raise SceneError([Fault("--show", "name", show, words)])
+            text = known[show].read_text(encoding="utf-8")
             if not json_:
                 print(text, end="")
             return Output({"scene": show, "file": text})

@@ -11,7 +11,8 @@ A file of errors states what varies, and cases, seed and sampling:
   mean = "9.9 kg"
   sd = "20 g"
 
-Other distributions: fixed (value), uniform and log-uniform (low, high), truncated-normal (mean,
+\\[factor."thrust.peak"] is a factor of the value of the scene, and an offset has the keys axial and
+radial, or y and z. Other distributions: fixed (value), uniform and log-uniform (low, high), truncated-normal (mean,
 sd, low, high, rule "redraw" or "clip") and rayleigh (scale). A table has dotted keys in its
 first line, units in the second or in each cell, and one case in every further line.
 

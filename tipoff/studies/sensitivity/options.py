@@ -19,8 +19,8 @@ class Options:
     vary: Annotated[
         str | None,
         typer.Option(
-            metavar="FILE",
-            help="Distributions of the uncertain inputs, a .toml file; default: "
+            metavar="NAME_OR_FILE",
+            help="Errors as of tipoff ensemble: a .toml file, or a name of the catalogue; default: "
             "studies/sensitivity/tolerances.toml.",
         ),
     ] = None

@@ -1,16 +1,10 @@
 """The uncertain inputs of a launcher from a file (by default ``tolerances.toml`` here), and the
 cases at points of the unit cube.
 
-Each key has a distribution of ``scenes.distributions``: under ``[vary]`` of the number itself, under
-``[factor]`` of a factor of its nominal value. A scene states an offset by size r and angle a; the file
-may state its components::
-
-    misalignment  y = r cos a, z = r sin a
-    eccentricity  y = r sin a, z = r cos a    (angles as in ``scenes.effects``)
-
-so that independent normal components describe an unknown direction. Where the exponent e of a
-contact law varies, the force at the reference penetration p_r of the calibration is kept:
-k' = k p_r^(e - e'). Static friction varies in proportion to dynamic friction, unless it has its own
+The file is one of errors (``scenes.uncertainty``), whose keys that the scene does not have are left out.
+Independent normal components y and z of an offset (``scenes.polar``) describe an unknown direction. Where
+the exponent e of a contact law varies, the force at the reference penetration p_r of the calibration is
+kept: k' = k p_r^(e - e'). Static friction varies in proportion to dynamic friction, unless it has its own
 distribution.
 """
 
@@ -18,7 +12,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import ValidationError
 
 from tipoff.calibration.parameters import REFERENCE_PENETRATION
 from tipoff.faults import Fault, SceneError
@@ -26,14 +19,14 @@ from tipoff.files import content_hash
 from tipoff.lowfi.ensemble.derived import friction
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes import overrides as keys
-from tipoff.scenes import reading
-from tipoff.scenes.distributions import BY_NAME, Distribution
+from tipoff.scenes import polar, reading, uncertainty
+from tipoff.scenes.distributions import Distribution
 from tipoff.scenes.effects.contact import LinearTable
-from tipoff.scenes.faults import faults_of, renamed
 from tipoff.scenes.scene import Scene
 
 DEFAULT = Path(__file__).with_name("tolerances.toml")
 _KINDS = ("vary", "factor")
+_OF_DRAWS = ("cases", "seed", "sampling")  # what a file of errors states for random draws
 _SPRINGS = (
     "contact.stiffness",
     "contact.exponent",
@@ -82,25 +75,31 @@ class Tolerances(NamedTuple):
             assert self.scene.friction is not None  # an input of the coefficient needs it
             if self.scene.friction.dynamic > 0.0:
                 found |= friction(self.scene, found["friction.dynamic"])
-        polar = _polar(found)
-        return [
-            dict(zip(polar, values))
-            for values in zip(*(column.tolist() for column in polar.values()))
-        ]
+        for key in list(found):
+            if own := polar.component(
+                key
+            ):  # the other one is that of the scene, if it does not vary
+                for axis in polar.COMPONENTS:
+                    other = f"{own[0]}.{axis}"
+                    if other not in found:
+                        value = uncertainty.component_of(self.scene, other)
+                        found[other] = np.full(len(probabilities), value)
+        columns = polar.without_components({key: column.tolist() for key, column in found.items()})
+        return [dict(zip(columns, values)) for values in zip(*columns.values())]
 
 
 def digest(path: str | Path) -> str:
     """Hexadecimal digest of the content of a file. Raises SceneError where it cannot be read."""
-    return content_hash(reading.toml(Path(path), str(path)))
+    return content_hash(reading.toml(uncertainty.path_of(path), str(path)))
 
 
 def load(path: str | Path, scene: Scene, model: str = COMPLIANT) -> Tolerances:
     """The tolerances of a file for ``scene`` and the surrogate ``model``. Raises SceneError listing
     every fault."""
-    raw, source = reading.toml(Path(path), str(path)), str(path)
+    raw, source = reading.toml(uncertainty.path_of(path), str(path)), str(path)
     found: list[Input] = []
     left_out: dict[str, str] = {}
-    known = ("description", *_KINDS)
+    known = ("description", *_OF_DRAWS, *_KINDS)
     faults = [
         Fault(source, key, "no such key", f"one of {', '.join(known)}")
         for key in raw
@@ -156,24 +155,10 @@ def _tables(raw: dict, source: str, faults: list[Fault]) -> list[tuple[str, str,
 def _input(
     source: str, kind: str, key: str, table: dict, scene: Scene, faults: list[Fault]
 ) -> Input | None:
-    place = f"{kind}.{key}"
-    unit = keys.unit(Scene, _stored(key))
-    if unit is None:
-        faults.append(
-            Fault(source, place, repr(table), renamed(key) or "a key that holds a number")
-        )
+    distribution = uncertainty.distribution(source, kind, key, table, False, faults)
+    if distribution is None:
         return None
-    if (name := table.get("distribution")) not in BY_NAME:
-        faults.append(
-            Fault(source, f"{place}.distribution", repr(name), f"one of {', '.join(BY_NAME)}")
-        )
-        return None
-    context = {"unit": "dimensionless" if kind == "factor" else unit, "bare_numbers_are_si": False}
-    try:
-        distribution = BY_NAME[name].model_validate(table, context=context)
-    except ValidationError as error:
-        faults += [fault._replace(key=f"{place}.{fault.key}") for fault in faults_of(error, source)]
-        return None
+    unit = uncertainty.unit_of(key) or ""
     return Input(key, kind == "factor", distribution, keys.held(scene, key), unit)
 
 
@@ -195,38 +180,3 @@ def _idle(item: Input, scene: Scene, model: str) -> str | None:
         if item.is_factor and item.nominal == 0.0
         else None
     )
-
-
-def _component(key: str) -> tuple[str, str] | None:
-    """Table of an offset and y or z, for a key that is a component of one."""
-    table, _, last = key.rpartition(".")
-    return (
-        (table, last)
-        if table.endswith(("misalignment", "eccentricity")) and last in ("y", "z")
-        else None
-    )
-
-
-def _stored(key: str) -> str:
-    """The key of a number of the scene with the same unit."""
-    component = _component(key)
-    return f"{component[0]}.axial" if component else key
-
-
-def _polar(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """``columns`` with the components of offsets converted to sizes and angles."""
-    found: dict[str, np.ndarray] = {}
-    offsets: dict[str, dict[str, np.ndarray]] = {}
-    for key, column in columns.items():
-        if component := _component(key):
-            offsets.setdefault(component[0], {})[component[1]] = column
-        else:
-            found[key] = column
-    for table, parts in offsets.items():
-        nothing = np.zeros_like(next(iter(parts.values())))
-        y, z = parts.get("y", nothing), parts.get("z", nothing)
-        found[f"{table}.axial"] = np.hypot(y, z)
-        found[f"{table}.radial"] = (
-            np.arctan2(z, y) if table.endswith("misalignment") else np.arctan2(y, z)
-        )
-    return found
