@@ -179,7 +179,7 @@ def test_a_table_beside_a_design_takes_the_place_of_its_results(
         "thrust": ("windy.csv: ", "Thrust ("),
         "buttons": ("design.ork: ", "railbutton"),
     }.items():
-        text = scenes.provenance.of(scene.provenance, key)
+        text = scenes.provenance.nearest(scene.provenance, key)
         assert text.startswith(words[0]) and words[1] in text, text
 
 
