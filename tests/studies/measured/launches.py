@@ -69,10 +69,16 @@ def sheet(**launch) -> LaunchSheet:
     return LaunchSheet.model_validate(raw, context={"bare_numbers_are_si": True})
 
 
-def log(run: Trajectory, gravity: np.ndarray, errors: Errors, seed: int, rough: float = 0.0) -> Log:
+def log(
+    run: Trajectory,
+    gravity: np.ndarray,
+    errors: Errors,
+    seed: int,
+    rough: float = 0.0,
+    interval: float = 1e-3,
+) -> Log:
     """The log of a ``run`` under ``gravity`` (3,) m/s2 by a unit with ``errors``. A ``rough`` rail shakes it across
-    the axis up to the exit, by so many times its noise."""
-    interval = 1e-3
+    the axis up to the exit, by so many times its noise. ``interval`` between samples (s)."""
     assert run.outcome.exit_time is not None
     until = run.outcome.exit_time + AFTER
     time = interval * (np.arange(-round(REST / interval), round(until / interval)) + errors.phase)
@@ -117,8 +123,9 @@ def motion(
 ) -> tuple[np.ndarray, np.ndarray]:
     """True rates (n,3) rad/s, ``delay`` (s) late, and mean specific forces (n,3) m/s2 over the intervals around
     the instants ``time`` (n,)."""
-    # the settled window ends between two samples, so the last one is no whole interval later
-    known, step = run.time[:-2], time[1] - time[0]
+    # the thrust of the scene ends where the settled window begins; the motor of the log burns on
+    burnt = run.outcome.window_start - 2e-3
+    known, step = run.time[run.time < burnt], time[1] - time[0]
 
     def at(values, instants):
         kept = values[: known.size]

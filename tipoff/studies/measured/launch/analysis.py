@@ -58,7 +58,7 @@ def analyse(sheet: LaunchSheet, log: Log, scene: Scene, source: str) -> Launched
     samples = calibrated(sheet, log)
     assert samples.force is not None  # its sheet has accelerations
     rest, first = _start(sheet, samples, source)
-    start = float(samples.time[first]) - 0.5 * log.interval
+    start = float(samples.time[first]) + 0.5 * sum(budget.SPAN) * log.interval
     gravity = float(samples.force[rest, 0].mean())
     found = Motion(samples.time - start, samples.force[:, 0] - gravity, rest, log.interval)
     left, spread, notes = _exit(sheet, found, samples, ends.travel(scene), source)

@@ -9,7 +9,7 @@ reaches the travel, it moves by
 |---|---|---|
 | scale | u(s), and a misaligned axis: u(E)^2 / 2 | B |
 | bias | mean of the specific force at rest: sigma sqrt(tau / n) | A |
-| start | one interval (rectangular): the step of the force at the start is anywhere in it | B |
+| start | an interval and a half (rectangular, ``SPAN``), in which the force may have risen | B |
 | noise | white noise of the force, integrated once and twice | A |
 | integration | a third of the change with every second sample (Richardson) | B |
 | travel | stated | B |
@@ -35,6 +35,9 @@ from tipoff.studies.measured.reduction import (
 )
 from tipoff.studies.measured.sheet import LaunchSheet
 
+# Intervals in which the force may have risen before the first sample that shows it: one before it if a sample is the
+# force at its instant, half of one before to half of one behind it if a sample is the mean over its interval.
+SPAN = (-1.0, 0.5)
 CLEAR = 2.0  # standard uncertainties of the exit after which the line begins
 
 
@@ -65,7 +68,7 @@ def of_motion(
     speed, way = travelled(found.time, found.along)
     at = [float(np.interp(left, found.time, values)) for values in (way, speed, found.along)]
     moving = found.time > 0.0
-    rise, step = float(found.along[moving][0]), found.interval / np.sqrt(12.0)
+    rise, step = float(found.along[moving][0]), (SPAN[1] - SPAN[0]) * found.interval / np.sqrt(12.0)
     rest = found.along[found.rest]
     tau = correlation_time([(rest - rest.mean())[:, None]])
     bias = float(rest.std(ddof=1)) * np.sqrt(tau / rest.size)
