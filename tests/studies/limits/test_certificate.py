@@ -15,7 +15,7 @@ from tipoff.studies.limits.certificate import Within
 from tipoff.studies.limits.constants import Margin
 from tipoff.studies.limits.options import Options
 from tipoff.studies.limits.results import CertifiedFactor, Drawn, Limits
-from tipoff.studies.limits.search import Found
+from tipoff.studies.limits.search import Found, Trial
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.stratified import Runs
@@ -69,8 +69,9 @@ def test_both_models_agree_and_the_bound_is_above_the_closed_form(study, found):
 
 def shown(found: certificate.Certificate) -> str:
     """The text of a result with this certificate."""
+    nominal = Found("found", 1.0, trials=(Trial(1.0, 40),))
     row = CertifiedFactor(
-        name="together", words="set", unit="1", most=1.0, nominal=Found("found", 1.0), advised=None
+        name="together", words="set", unit="1", most=1.0, nominal=nominal, advised=None
     )
     made = Limits(
         **dict(model="", modes=0, modes_why="", agreement="", at="settled", at_why=""),
