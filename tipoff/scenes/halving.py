@@ -65,14 +65,18 @@ def _whole_turn(item: Distribution) -> bool:
 def words(errors: Uncertainty, name: str) -> str:
     """The ranges that have 95 % of the values of a tolerance, with their units."""
     own = [key for key in tolerances(errors)[name] if not _whole_turn(errors.vary[key])]
-    shown = [_range(errors, key) for key in own]
+    shown = [range_of(errors, key) for key in own]
     if len(own) == 1 or len(set(shown)) == 1:
         return shown[0]
     return ", ".join(f"{key.rpartition('.')[2]} {text}" for key, text in zip(own, shown))
 
 
-def _range(errors: Uncertainty, key: str) -> str:
+def range_of(errors: Uncertainty, key: str) -> str:
+    """The range that has 95 % of the values of a varied ``key``, with its unit. Of a size from zero on, it
+    begins at zero."""
     item, unit = errors.vary[key], unit_of(key) or ""
+    if key.endswith(".radial") and _whole_turn(item):
+        return "any direction"
     if key in errors.factors:
         unit = ""
     name = _SHOWN.get(unit, unit)

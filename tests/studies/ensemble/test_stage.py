@@ -2,12 +2,14 @@
 
 import errno
 import json
+import os
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from pydantic import TypeAdapter
+from scipy.stats import norm
 from typer.testing import CliRunner
 
 from tipoff import cache
@@ -177,6 +179,18 @@ def test_the_probability_above_limits(tmp_path):
     above = found["above"]
     assert 0 < count < 300 and above["count"] == count and above["share"] == count / 300
     assert above["low"] < above["share"] < above["high"]
+    alone = [int((abs(rates[:, 0]) > 0.5).sum()), int((np.linalg.norm(rates, axis=1) > 3.0).sum())]
+    assert [item["count"] for item in above["each"]] == alone
+    assert f"above total rate 3 deg/s: {100.0 * alone[1] / 300:.3g} % of the cases" in first.stdout
+    for place, axis in enumerate("xyz"):
+        shown = found["quantiles"][f"rate_{axis}_deg_s"][2]
+        assert shown["share"] == 0.95
+        assert shown["value"] == pytest.approx(np.quantile(abs(rates[:, place]), 0.95))
+        assert f"settled rate about {axis}, size" in first.stdout
+    assert {"rates.png", "rates.svg"} <= set(os.listdir(found["store"]))
+    assert "any direction" in first.stdout  # the sizes of the errors stand beside them
+    half = 0.4 / 3.0 * norm.ppf(0.5 + 0.5 * 0.95 * (2.0 * norm.cdf(3.0) - 1.0))
+    assert f"0 to {half:.3g} deg" in first.stdout
     assert "above any of the limits rate about x 0.5 deg/s, total rate 3 deg/s: " in first.stdout
     assert "without a rate" not in first.stdout
     lost = replace(TypeAdapter(stage.Ran).validate_python(found), settled=297)

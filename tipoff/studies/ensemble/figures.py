@@ -1,13 +1,49 @@
-"""Figures of an ensemble: what halving each tolerance gains."""
+"""Figures of an ensemble: its rates about each axis with their limits, and what halving each tolerance
+gains."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from tipoff.studies.ensemble.halves import SHARE, Halved
+from tipoff.studies.populations import exceedance
+from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.paired import Bounded
 from tipoff.studies.render.chart import Picture
-from tipoff.studies.render.palette import GREY, NAVY, RULE, VERMILION
+from tipoff.studies.render.palette import AXIS_COLOURS, GREY, INK, NAVY, RULE, TEAL, VERMILION
+
+_BINS = 60
+
+
+def of_rates(rates: np.ndarray, limits: Sequence[Limit], at: str) -> Picture:
+    """The distributions of ``rates`` (n,3), deg/s, of the cases that have one, about each axis and in total,
+    with the ``limits`` as lines; ``at``: the instant in words."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.6, 5.6), dpi=130, layout="constrained")
+    columns = [*rates.T, np.linalg.norm(rates, axis=1)]
+    for place, (axis, values) in enumerate(zip((*"xyz", exceedance.TOTAL), columns)):
+        axes = figure.add_subplot(2, 2, place + 1)
+        shares = np.full(len(values), 100.0 / len(values))
+        axes.hist(values, _BINS, weights=shares, color=AXIS_COLOURS.get(axis, TEAL))
+        own = [limit.deg_s for limit in limits if limit.axis == axis]
+        for limit in own:
+            for end in (limit,) if axis == exceedance.TOTAL else (-limit, limit):
+                axes.axvline(end, color=INK, linestyle="--", linewidth=1.2)
+        name = "total rate" if axis == exceedance.TOTAL else f"rate about {axis}"
+        limited = f", limit {', '.join(f'{limit:g}' for limit in own)}" if own else ""
+        axes.set_xlabel(f"{name} (deg/s){limited}", fontsize=9.5)
+        axes.set_ylabel("cases (%)", fontsize=9.5)
+        _plain(axes, "y")
+    figure.suptitle(f"{len(rates):,} cases, rates {at}", fontsize=10.5)
+    return Picture("rates", figure)
+
+
+def _plain(axes, grid: str) -> None:
+    axes.grid(axis=grid, color=RULE)
+    axes.set_axisbelow(True)
+    axes.tick_params(labelsize=8.5)
+    axes.spines[["top", "right"]].set_visible(False)
 
 
 def of_halves(rows: Sequence[Halved], limits: Sequence[str]) -> Picture:
@@ -51,10 +87,7 @@ def of_halves(rows: Sequence[Halved], limits: Sequence[str]) -> Picture:
         axes.set_yticks(places, [f"half of {row.tolerance}" if not place else "" for row in own])
         axes.set_ylim(-0.6, len(own) - 0.4)
         axes.set_xlabel(words, fontsize=9.5)
-        axes.grid(axis="x", color=RULE)
-        axes.set_axisbelow(True)
-        axes.tick_params(labelsize=8.5)
-        axes.spines[["top", "right"]].set_visible(False)
+        _plain(axes, "x")
     return Picture("halved", figure)
 
 

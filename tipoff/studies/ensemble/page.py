@@ -8,6 +8,7 @@ from tipoff.scenes.scene import Scene
 from tipoff.studies.ensemble.halves import SHARE, Halved
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.ensemble.stage import Cost, One, Ran, Sensitive
+from tipoff.studies.ensemble.summary import Above
 from tipoff.studies.populations.paired import Bounded
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Column, Table, bounded, estimate, percent
@@ -17,6 +18,8 @@ from tipoff.workspace.words import counted
 _LABELS = {
     "rate_deg_s": "total settled rate (deg/s)",
     "exit_rate_deg_s": "total rate at exit (deg/s)",
+    **{f"rate_{axis}_deg_s": f"settled rate about {axis}, size (deg/s)" for axis in "xyz"},
+    **{f"exit_rate_{axis}_deg_s": f"rate at exit about {axis}, size (deg/s)" for axis in "xyz"},
     "lateral_velocity_mm_s": "lateral velocity (mm/s)",
     "direction_error_deg": "direction error (deg)",
     "exit_lateral_velocity_mm_s": "lateral velocity at exit (mm/s)",
@@ -47,31 +50,34 @@ def summary(found: Ran) -> list[Part]:
     ]
     return [
         Bullets(run),
-        *_varied(found.cases.get("vary", {})),
+        *_varied(found.cases.get("vary", {}), found.ranges),
         *([table_of_quantiles(found)] if found.quantiles else []),
-        *([_above(found)] if found.above else []),
+        *(_above(found) if found.above else []),
         *([table_of_halves(found)] if found.halves else []),
         f"run time: {_time(cost)}; {(cost.peak_memory_bytes or 0) / 1e6:.0f} MB of memory at most",
         *(_sensitivity(found.sensitivity) if found.sensitivity else []),
-        f"store: {found.store}",
+        f"store: {found.store}, with its figures",
     ]
 
 
-def _above(found: Ran) -> str:
-    """The probability above any limit. Cases without a rate count as above it."""
+def _above(found: Ran) -> list[Part]:
+    """The probability above any limit, and above each of several. Cases without a rate count as above."""
     above = found.above
     assert above is not None
+    lost = found.counts["asked"] - found.settled
+    unknown = f"; {counted(lost, 'case')} without a rate count as above" if lost else ""
+    lines = [f"above any of the limits {', '.join(above.limits)}: {_shared(above, found)}{unknown}"]
+    lines += [f"  above {item.limits[0]}: {_shared(item, found)}" for item in above.each]
+    return [Bullets(lines)]
+
+
+def _shared(above: Above, found: Ran) -> str:
     most = (
         ""
         if above.low is None or above.high is None
         else f" ({found.confidence:.0%} bounds {percent(above.low)} to {percent(above.high)} %)"
     )
-    lost = found.counts["asked"] - found.settled
-    unknown = f"; {counted(lost, 'case')} without a rate count as above" if lost else ""
-    return (
-        f"above any of the limits {', '.join(above.limits)}: {percent(above.share)} % of the cases, "
-        f"{above.count:,}{most}{unknown}"
-    )
+    return f"{percent(above.share)} % of the cases, {above.count:,}{most}"
 
 
 def _others(statuses: dict[str, int]) -> str:
@@ -112,9 +118,13 @@ def _sensitivity(found: Sensitive) -> list[Part]:
     ]
 
 
-def _varied(vary: dict) -> list[Part]:
-    rows = [(key, item["distribution"], item.get("rule", "")) for key, item in vary.items()]
-    return [Table(["varied input", "distribution", "beyond its bounds"], rows)] if rows else []
+def _varied(vary: dict, stated: dict[str, str]) -> list[Part]:
+    rows = [
+        (key, stated.get(key, ""), item["distribution"], item.get("rule", ""))
+        for key, item in vary.items()
+    ]
+    heads = ["varied input", "95 % of its values", "distribution", "beyond its bounds"]
+    return [Table(heads, rows)] if rows else []
 
 
 def table_of_quantiles(found: Ran) -> Table:

@@ -200,24 +200,35 @@ def run(study: Study, options: Options) -> Ran:
         run=replace(cost, peak_memory_bytes=memory),
         hardware=machine.describe(),
     )
-    found = _drawn(found, Path(store.path), [limit.words for limit in limits])
+    found = _drawn(found, store, limits)
     write_json(study.path("ensemble.json"), found.plain)
     return found
 
 
-def _drawn(found: Ran, folder: Path, limits: list[str]) -> Ran:
-    """The result, after its figures are drawn into the ``folder`` of its store; ``failed`` of it has the
+def _drawn(found: Ran, store: Store, limits: list[Limit]) -> Ran:
+    """The result, after its figures are drawn into the folder of its ``store``; ``failed`` of it has the
     reason if they cannot be drawn."""
 
     def files() -> None:
         from tipoff.studies.ensemble import figures
         from tipoff.studies.render import chart
 
+        rates = np.degrees(store.column(_rate(found.at)))
+        settled = rates[np.isfinite(rates[:, 0])]
+        if len(settled):
+            shown = figures.of_rates(settled, limits, Instant(found.at, found.at_why).words)
+            chart.to_files(shown, store.path)
         if found.halves:
-            chart.to_files(figures.of_halves(found.halves, limits), folder)
+            words_ = [limit.words for limit in limits]
+            chart.to_files(figures.of_halves(found.halves, words_), store.path)
 
     _, reason = attempt("drawing the figures", files)
     return replace(found, failed=[*found.failed, f"figures: {reason}"]) if reason else found
+
+
+def _rate(at: str) -> str:
+    """The column of the rates at an instant."""
+    return "exit_rate" if at == instant.EXIT else "rate"
 
 
 def _export(study: Study, store: Store, export: tuple[str, Path]) -> None:
@@ -284,7 +295,7 @@ def _halves(
     their own within that of the ensemble. Empty if not requested."""
     if not options.halve:
         return ()
-    rate = "exit_rate" if at.at == instant.EXIT else "rate"
+    rate = _rate(at.at)
 
     def rates(errors: Uncertainty, name: str) -> np.ndarray:
         if not name:

@@ -1,7 +1,7 @@
 """The statistics of an ensemble: counts, quantiles with their bounds, and how it was drawn."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import Store
 from tipoff.mechanics import instant
 from tipoff.mechanics.instant import Instant
+from tipoff.scenes import halving
 from tipoff.studies.populations import exceedance, spread
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.spread import Quantile
@@ -26,14 +27,25 @@ def _total(rate: np.ndarray) -> np.ndarray:
     return np.degrees(np.linalg.norm(rate, axis=1))
 
 
+def _about(axis: int) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda rate: np.degrees(np.abs(rate[:, axis]))
+
+
+def _sizes(prefix: str) -> dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]]:
+    """The size of the rate in total and about each axis."""
+    column = f"{prefix}rate"
+    about = {f"{column}_{axis}_deg_s": (column, _about(place)) for place, axis in enumerate("xyz")}
+    return {f"{column}_deg_s": (column, _total), **about}
+
+
 # the column, and a function of it; those of the instant first, then the total rate of the other one
 _SETTLED: dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]] = {
-    "rate_deg_s": ("rate", _total),
+    **_sizes(""),
     "lateral_velocity_mm_s": ("lateral_velocity", lambda speed: 1e3 * speed),
     "direction_error_deg": ("direction_error", np.degrees),
 }
 _AT_EXIT: dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]] = {
-    "exit_rate_deg_s": ("exit_rate", _total),
+    **_sizes("exit_"),
     "exit_lateral_velocity_mm_s": ("exit_velocity", lambda speed: 1e3 * instant.lateral(speed)),
     "exit_direction_error_deg": ("exit_velocity", lambda speed: np.degrees(instant.off(speed))),
 }
@@ -50,6 +62,7 @@ class Above:
     share: float
     low: float | None
     high: float | None
+    each: tuple["Above", ...] = ()  # of each limit alone, if there are several
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +70,8 @@ class Statistics:
     """Counts, and quantiles of the cases that settled, with the method of their bounds. ``at``: the
     instant of the quantities, and why; ``settled``: cases with values at it; ``above``: None without
     limits. ``cases``: the source of
-    the cases; ``provenance`` of the distributions by key; ``failures``: the first ones, with number,
+    the cases; ``ranges`` with 95 % of the values
+    and ``provenance`` of the distributions by key; ``failures``: the first ones, with number,
     status, reason and inputs; ``failed``: their reasons if no case is ok."""
 
     model: str
@@ -71,6 +85,7 @@ class Statistics:
     quantiles: dict[str, tuple[Quantile, ...]]
     above: Above | None
     cases: dict[str, Any]
+    ranges: dict[str, str]
     provenance: dict[str, str]
     numerics: dict[str, Any]
     modes_why: str
@@ -117,6 +132,7 @@ def of(
         },
         above=_above(store, rate, limits, unbounded is None) if limits else None,
         cases=ensemble.source.identity,
+        ranges=_ranges(ensemble.source),
         provenance=_provenance(ensemble.source),
         numerics=ensemble.numerics.as_dict(),
         modes_why=ensemble.modes_why,
@@ -127,15 +143,25 @@ def of(
 
 
 def _above(store: Store, rate: str, limits: Sequence[Limit], bounded: bool) -> Above:
-    """Share of the cases whose column ``rate`` is above any of the ``limits``."""
+    """Share of the cases whose column ``rate`` is above any of the ``limits``, and above each."""
     places = [store.bounds(number) for number in range(len(store))]
-    rates = (np.degrees(store.column(rate, *place)) for place in places)
-    count = int(sum(exceedance.any_above(each, limits).sum() for each in rates))
-    low, high = exceedance.bounds(count, store.asked, CONFIDENCE) if bounded else (None, None)
+    groups = [list(limits), *([limit] for limit in limits if len(limits) > 1)]
+    counts = np.zeros(len(groups), dtype=int)
+    for place in places:
+        rates = np.degrees(store.column(rate, *place))
+        counts += [int(exceedance.any_above(rates, group).sum()) for group in groups]
+    whole, *each = (
+        _share(group, int(count), store.asked, bounded) for group, count in zip(groups, counts)
+    )
+    return replace(whole, each=tuple(each))
+
+
+def _share(limits: Sequence[Limit], count: int, asked: int, bounded: bool) -> Above:
+    low, high = exceedance.bounds(count, asked, CONFIDENCE) if bounded else (None, None)
     return Above(
         limits=tuple(limit.words for limit in limits),
         count=count,
-        share=count / store.asked,
+        share=count / asked,
         low=low,
         high=high,
     )
@@ -164,6 +190,11 @@ def _no_bounds(source) -> str | None:
             "random sampling has bounds"
         )
     return None
+
+
+def _ranges(source) -> dict[str, str]:
+    errors = source.uncertainty if isinstance(source, Drawn) else None
+    return {key: halving.range_of(errors, key) for key in errors.vary} if errors else {}
 
 
 def _provenance(source) -> dict[str, str]:
