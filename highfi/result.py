@@ -7,7 +7,8 @@ from tipoff.highfi.dynamics import ending, monitor, samples
 from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.recorded import Recorded
-from tipoff.mechanics import comoving, ledger, loads, model_names, outcome
+from tipoff.mechanics import comoving, ledger, model_names, outcome
+from tipoff.mechanics import ending as books
 from tipoff.mechanics.promises import FINITE_ELEMENTS, broken
 from tipoff.results.trajectory import Trajectory
 
@@ -46,7 +47,7 @@ def trajectory(stepper: Stepper, recorded: Recorded, cost: dict, numerics: Numer
         message=message,
         **comoving.motion(seen_from, moved)._asdict(),
         pad_force=forces,
-        **loads.named(stepper.state.guide_loads[0]),
+        **books.named_loads(stepper.state.guide_loads[0]),
         energy=total,
         transverse_energy=transverse,
         outcome=comoving.outcome(seen_from, result),

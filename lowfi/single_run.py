@@ -11,7 +11,7 @@ from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import Numerics, promises_of
 from tipoff.lowfi.preparation import prepare
-from tipoff.mechanics import comoving, ending, loads, outcome, promises
+from tipoff.mechanics import comoving, ending, outcome, promises
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import launch, scene_model
@@ -67,7 +67,7 @@ class SingleRun:
             np.zeros((first, SAMPLE_SIZE)),
             np.zeros((first, model.faces.axis.size, 3)),
         )
-        self.loads = loads.none(int(model.faces.guide.max(initial=-1)) + 1)
+        self.loads = ending.no_loads(int(model.faces.guide.max(initial=-1)) + 1)
         self.last, self.taken, self.whole, self.message = self.end, 0, False, ""
 
     def begin(self) -> None:
@@ -162,7 +162,7 @@ class SingleRun:
             message=message,
             **comoving.motion(seen_from, moved)._asdict(),
             pad_force=forces,
-            **loads.named(self.loads[0]),
+            **ending.named_loads(self.loads[0]),
             energy=total,
             transverse_energy=across,
             outcome=comoving.outcome(seen_from, result),

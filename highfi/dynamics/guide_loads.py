@@ -1,9 +1,9 @@
-"""Largest load of each guide of the reference (``mechanics.loads``), from the forces at each step."""
+"""Largest load of each guide of the reference (``mechanics.ending``), from the forces at each step."""
 
 from tipoff.highfi.state.pose import triple
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
-from tipoff.mechanics import loads as rows
+from tipoff.mechanics import ending as books
 
 
 @inlined
@@ -25,14 +25,14 @@ def _take(guide, frame, state, time):
     """Forces are in the axes of the frame; those of a fixed frame are the scene axes."""
     loads, turn = state.guide_loads, _turn(frame, state)
     body = rotation.matrix(_four(state.payload.quaternion))
-    rows.clear(loads)
+    books.clear_loads(loads)
     for face in range(guide.size):
         force, moment = triple(state.face_force[face]), triple(state.face_moment[face])
         if force[0] != 0.0 or force[1] != 0.0 or force[2] != 0.0:
             own = rotation.unrotate(body, rotation.rotate(turn, force))
             couple = rotation.unrotate(body, rotation.rotate(turn, moment))
-            rows.add(loads, guide[face], own, couple)
-    rows.take(loads, time)
+            books.add_load(loads, guide[face], own, couple)
+    books.take_loads(loads, time)
 
 
 @kernel

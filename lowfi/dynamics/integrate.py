@@ -7,12 +7,12 @@ from tipoff.lowfi import pushers
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.stick_slip import clear
 from tipoff.lowfi.contact.wall_ends import DEPTH
-from tipoff.lowfi.dynamics import audit, ending, guide_loads, stick_slip
+from tipoff.lowfi.dynamics import audit, ending, stick_slip
 from tipoff.lowfi.dynamics.cases import BOOK, LEFT_OPEN, STEPS, system_of
 from tipoff.lowfi.dynamics.dormand_prince import interpolate
 from tipoff.lowfi.dynamics.local_error import with_reach
 from tipoff.lowfi.dynamics.loop import Loop, allocate
-from tipoff.lowfi.dynamics.sample import observe
+from tipoff.lowfi.dynamics.sample import follow_loads, observe
 from tipoff.lowfi.dynamics.step import step
 from tipoff.lowfi.dynamics.survey import survey, update_engaged
 from tipoff.lowfi.dynamics.vibration import follow_neglected, reset_neglected
@@ -197,7 +197,7 @@ def _reach(system, plan, tolerance, marks, loop, sampling, time):
         status = advance(system, plan, tolerance, marks, loop)
         if status != SAMPLED:
             return status
-        guide_loads.follow(system, loop, sampling.loads)
+        follow_loads(system, loop, sampling.loads)
     return SAMPLED
 
 

@@ -83,9 +83,7 @@ class Sampling(NamedTuple):
     whole: bool  # continue to the end of the scene, even if exit and jam are settled
     rows: np.ndarray  # (n, SAMPLE_SIZE), filled up to ``number``
     forces: np.ndarray  # (n, f, 3) N, of each pad face on the payload
-    loads: (
-        np.ndarray
-    )  # largest loads of the guides (``dynamics.guide_loads``), of none without samples
+    loads: np.ndarray  # largest loads of the guides (``dynamics.sample``), of none without samples
 
 
 @by_reference

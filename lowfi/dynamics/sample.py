@@ -1,5 +1,10 @@
 """One sample of a run: positions, velocities, rates, energies and momenta of a state, and the
-force on every pad face."""
+force on every pad face. And the largest load of each guide, found step by step.
+
+This load is taken at the ends of steps. Between three of them in a row force and moment are parabolas, so
+a peak between two ends is not missed, and nothing depends on the sampling interval. A face that begins to
+press has no force before; the first step counts at its start too.
+"""
 
 import numpy as np
 
@@ -12,10 +17,10 @@ from tipoff.lowfi.contact.compliant.loads import energy as energy_in_compliance
 from tipoff.lowfi.contact.compliant.loads import load as compliant_load
 from tipoff.lowfi.contact.compliant.loads import wall_force
 from tipoff.lowfi.contact.compliant.modes import energies
-from tipoff.lowfi.contact.compliant.solution import solve
+from tipoff.lowfi.contact.compliant.solution import solve, solve_unless
 from tipoff.lowfi.contact.springs import along, load, penetration, relative_pose
 from tipoff.lowfi.dynamics.survey import stored
-from tipoff.lowfi.faces import HALF_LENGTH
+from tipoff.lowfi.faces import GUIDE, HALF_LENGTH
 from tipoff.lowfi.state import (
     IMPULSE,
     PAYLOAD,
@@ -25,6 +30,7 @@ from tipoff.lowfi.state import (
     WORK_SIZE,
     Motion,
 )
+from tipoff.mechanics import ending as books
 
 # Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes),
 # each BODY_SIZE long.
@@ -237,3 +243,83 @@ def _add_traction(sticking, row, face, pad, base, force):
         drag, _ = stick_slip.traction(sticking, row, face, pad, base)
         for j in range(3):
             force[j] += drag[j]
+
+
+@kernel
+def follow_loads(system, loop, loads):
+    """Raise ``loads`` to those of the accepted step; without guides there is nothing to do."""
+    if loads.shape[1] > 0 and _touches(loop):
+        clock = loop.clock
+        if loop.counts.steps == 1:
+            keep_solution(system.compliance)
+            _fill_loads(system, loop, loop.start, False, loads)
+            books.take_loads(loads, clock.began)
+            take_solution_back(system.compliance)
+        elif books.last_load(loads) != clock.began:
+            books.clear_loads(loads)
+            books.take_loads(loads, clock.began)
+        _fill_loads(system, loop, loop.end, True, loads)
+        books.take_loads(loads, clock.now)
+
+
+@kernel
+def _touches(loop):
+    for i in range(loop.touching.size):
+        if loop.touching[i]:
+            return True
+    return False
+
+
+@kernel
+def _fill_loads(system, loop, state, solved, loads):
+    """Fill the rows of a ``state``; ``solved``: compliant contact is solved there."""
+    body = slot.motion(system.payload, state, slot.PAYLOAD)
+    base = slot.frame(system.platform, state)
+    books.clear_loads(loads)
+    _add_loads_of_springs(system.contact, system, loop, body, base, loads)
+    _add_loads_of_compliance(
+        system.compliance, system, loop.touching, state, body, base, solved, loads
+    )
+
+
+@kernel
+def _add_load(face, body, force, point, loads):
+    arm = (point[0] - body.place[0], point[1] - body.place[1], point[2] - body.place[2])
+    own = rotation.unrotate(body.turn, force)
+    moment = rotation.cross(rotation.unrotate(body.turn, arm), own)
+    books.add_load(loads, int(face[GUIDE]), own, moment)
+
+
+@kernel
+def _add_loads_of_springs(contact, system, loop, body, base, loads):
+    if contact is not None:
+        place, turn = relative_pose(system.platform, body, base)
+        for i in range(loop.touching.size):
+            face = system.faces[i]
+            p = penetration(contact.thermal_offset, face, place, turn)
+            if loop.touching[i] and p > 0.0:
+                pad = load(contact, system.friction, system.platform, face, p, body, base)
+                _add_load(face, body, pad.normal, pad.point, loads)
+                _add_load(face, body, pad.drag, pad.point, loads)
+                if stick_slip.acts(contact.sticking):
+                    drag, _ = stick_slip.traction(contact.sticking, loop.stick[i], face, pad, base)
+                    _add_load(face, body, drag, pad.point, loads)
+
+
+@kernel
+def _add_loads_of_compliance(compliance, system, touching, state, body, base, solved, loads):
+    if compliance is not None:
+        faces, workspace = system.faces, compliance.workspace
+        place, turn = relative_pose(system.platform, body, base)
+        for rail in range(compliance.members.shape[0]):
+            count = solve_unless(solved, compliance, faces, rail, touching, place, turn, state)
+            for k in range(count):
+                i = workspace.order[k]
+                if workspace.force[i, 0] > 0.0:
+                    pad = compliant_load(
+                        compliance, system.friction, system.platform, faces, i, body, base
+                    )
+                    _add_load(faces[i], body, pad.normal, pad.point, loads)
+                    _add_load(faces[i], body, pad.drag, pad.point, loads)
+                    aside, point = wall_force(compliance, faces, i, body, base)
+                    _add_load(faces[i], body, aside, point, loads)

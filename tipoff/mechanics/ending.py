@@ -1,8 +1,11 @@
-"""Exit, settled window and jam of a run, found step by step. Both solvers use this module.
+"""Exit, settled window and jam of a run, and the largest load of each guide, found step by step. Both
+solvers use this module.
 
 A time loop updates an array, the book, after every step from its own interpolant. So the outcome
 does not depend on the sampling interval. The definitions are those of ``mechanics.outcome``.
 """
+
+from typing import Any
 
 import numpy as np
 
@@ -37,6 +40,13 @@ BOOK_SIZE = AT_EXIT + 3 * ROW_SIZE
 # window
 AFTER = 1e-3
 _ROUNDING = 1e-12  # relative; a scene that ends with the window contains it completely
+# Largest loads of the guides. Columns of a row: time (s), square of the force (N2), force (N) and its
+# moment about the payload's mass centre (N m), both in body axes.
+TIME, SQUARE, FORCE, MOMENT, LOAD_SIZE = 0, 1, 2, 5, 8
+
+
+# Rows of the largest loads, of the present instant, and of the two before it.
+_LARGEST, _PRESENT, _LAST, _EARLIER = range(4)
 
 
 @entry
@@ -167,3 +177,82 @@ def found(book: np.ndarray) -> tuple[str, Outcome]:
         exit_platform_attitude=rotation.vector(platform[ATTITUDE:SPIN]),
         exit_platform_rate=platform[SPIN:BODY],
     )
+
+
+def no_loads(guides: int) -> np.ndarray:
+    """Rows (4, ``guides``, LOAD_SIZE) of no load."""
+    return np.zeros((4, guides, LOAD_SIZE))
+
+
+@kernel
+def clear_loads(loads):
+    """Begin the rows of an instant."""
+    for i in range(loads.shape[1]):
+        for j in range(LOAD_SIZE):
+            loads[_PRESENT, i, j] = 0.0
+
+
+@kernel
+def add_load(loads, guide, force, moment):
+    """Add a ``force`` (N) on a ``guide`` and its ``moment`` (N m) to the rows of an instant."""
+    for i in range(3):
+        loads[_PRESENT, guide, FORCE + i] += force[i]
+        loads[_PRESENT, guide, MOMENT + i] += moment[i]
+
+
+@kernel
+def last_load(loads):
+    """Time (s) of the last instant that was taken."""
+    return loads[_LAST, 0, TIME]
+
+
+@kernel
+def take_loads(loads, time):
+    """Keep the rows of the instant ``time`` (s) that are larger than the largest ones so far, and the peaks
+    of parabolas through the last three instants."""
+    for guide in range(loads.shape[1]):
+        row = loads[_PRESENT, guide]
+        row[TIME], row[SQUARE] = time, _square(row)
+        _keep(row, loads[_LARGEST, guide])
+        if row[SQUARE] < loads[_LAST, guide, SQUARE] >= loads[_EARLIER, guide, SQUARE]:
+            _keep_peak(loads, guide)
+        for j in range(LOAD_SIZE):
+            loads[_EARLIER, guide, j], loads[_LAST, guide, j] = loads[_LAST, guide, j], row[j]
+
+
+@kernel
+def _square(row):
+    return row[FORCE] ** 2 + row[FORCE + 1] ** 2 + row[FORCE + 2] ** 2
+
+
+@kernel
+def _keep(row, largest):
+    if row[SQUARE] > largest[SQUARE]:
+        for j in range(LOAD_SIZE):
+            largest[j] = row[j]
+
+
+@kernel
+def _keep_peak(loads, guide):
+    """Keep the load at the peak of the parabola through the squares of three instants, the middle one of
+    which is the largest; uses the row before as workspace."""
+    row, middle, before = loads[_PRESENT, guide], loads[_LAST, guide], loads[_EARLIER, guide]
+    a, b = before[TIME] - middle[TIME], row[TIME] - middle[TIME]
+    if a < 0.0 < b:
+        low, high = before[SQUARE] - middle[SQUARE], row[SQUARE] - middle[SQUARE]
+        bend = (high / b - low / a) / (b - a)
+        at = -0.5 * (low / a - a * bend) / bend
+        first, second = at * (at - b) / (a * (a - b)), at * (at - a) / (b * (b - a))
+        for j in range(FORCE, LOAD_SIZE):
+            before[j] = middle[j] + first * (before[j] - middle[j]) + second * (row[j] - middle[j])
+        before[TIME], before[SQUARE] = middle[TIME] + at, _square(before)
+        _keep(before, loads[_LARGEST, guide])
+
+
+def named_loads(rows: np.ndarray) -> dict[str, Any]:
+    """Rows (g, LOAD_SIZE) as the arrays of a Trajectory."""
+    return {
+        "guide_time": rows[:, TIME].copy(),
+        "guide_force": rows[:, FORCE:MOMENT].copy(),
+        "guide_moment": rows[:, MOMENT:].copy(),
+    }
