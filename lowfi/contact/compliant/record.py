@@ -42,6 +42,8 @@ class Workspace(NamedTuple):
     pressed: np.ndarray  # (d+1,) m, of p times these powers
     moments: np.ndarray  # (2d+1, 2d+1) N/m, of powers of xi' and eta' over all cells
     order: np.ndarray  # (m,) numbers of the faces that are solved together
+    pressing: np.ndarray  # (m,) places in ``order`` of the faces with a pressed cell
+    change: np.ndarray  # (m, p) m, of the displacement of the faces in ``order``
     flexibility: np.ndarray  # (m, m, p p) m/N, between these faces
     slope: np.ndarray  # (m, m, p p) 1/N, its derivative along the rail
     matrix: np.ndarray  # (w, w)
@@ -254,6 +256,8 @@ def _workspace(faces: int, members: int, modes: int, degree: int, model: Model) 
         pressed=zeros((degree + 1,)),
         moments=zeros((2 * degree + 1, 2 * degree + 1)),
         order=np.zeros(members, dtype=np.int64),
+        pressing=np.zeros(members, dtype=np.int64),
+        change=zeros((members, patterns)),
         flexibility=zeros((members, members, patterns**2)),
         slope=zeros((members, members, patterns**2)),
         matrix=zeros((wide, wide)),

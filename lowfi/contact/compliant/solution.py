@@ -9,8 +9,9 @@ F is the flexibility without the modes, plus what friction of the payload that s
 (``lowfi.contact.compliant.modes``), T the thermal offset
 (``lowfi.contact.compliant.thermal_offset``). P is the gradient of a convex potential, so the
 solution is unique. While the set of pressed cells does not change, the equations are linear and a
-full correction is exact: it is the last one if it cannot change the set. The first guess is the
-previous displacement, moved with the pad as at the end of the last step
+full correction is exact: it is the last one if it cannot change the set. A face without a pressed cell
+has no K: the equations of the others are solved without it, and the change of their forces moves its
+wall. The first guess is the previous displacement, moved with the pad as at the end of the last step
 (``lowfi.contact.compliant.step_limit``)."""
 
 import numpy as np
@@ -169,25 +170,21 @@ def _correct(compliance, count, share):
     workspace, size = compliance.workspace, patterns.count(compliance.workspace.levels)
     for i in range(count):
         workspace.slack[i] = press(compliance, workspace.order[i])
-    fill_matrix(workspace, count)
-    for i in range(count):
-        face = workspace.order[i]
+    pressed = take_pressed(workspace, count)
+    _fill_left(compliance, count)
+    fill_matrix(workspace, pressed)
+    for i in range(pressed):
         for a in range(size):
-            total = 0.0
-            for j in range(count):
-                force = workspace.force[workspace.order[j]]
-                for c in range(size):
-                    total += workspace.flexibility[i, j, a * size + c] * force[c]
-            workspace.right[i * size + a, 0] = total - (
-                workspace.displacement[face, a]
-                - thermal_offset.offset(compliance.thermal_offset, face, a)
-                - modes.offset(compliance.modes, face, a)
-            )
-    eliminate(workspace.matrix, workspace.right, count * size, 1)
+            workspace.right[i * size + a, 0] = workspace.change[workspace.pressing[i], a]
+    eliminate(workspace.matrix, workspace.right, pressed * size, 1)
+    for i in range(pressed):
+        for a in range(size):
+            workspace.change[workspace.pressing[i], a] = workspace.right[i * size + a, 0]
+    _follow_pressed(workspace, count, pressed)
     largest, exact = 0.0, share == 1.0
     for i in range(count):
         face = workspace.order[i]
-        changes = workspace.right[i * size : (i + 1) * size, 0]
+        changes = workspace.change[i]
         exact = exact and largest_change(compliance, face, changes) < workspace.slack[i]
         for a in range(size):
             change = share * changes[a]
@@ -199,12 +196,62 @@ def _correct(compliance, count, share):
 
 
 @kernel
-def fill_matrix(workspace, count):
-    """1 + F K over the first ``count`` faces in order."""
-    size = patterns.count(workspace.levels)
+def take_pressed(workspace, count):
+    """Fill ``pressing`` with the places in ``order`` of the first ``count`` faces that have a pressed
+    cell, or values that are not finite; returns their number."""
+    pressed = 0
     for i in range(count):
-        for j in range(count):
+        if workspace.stiffness[workspace.order[i], 0, 0] != 0.0:
+            workspace.pressing[pressed] = i
+            pressed += 1
+    return pressed
+
+
+@kernel
+def _fill_left(compliance, count):
+    """Fill ``change`` with what is left of the equations: F P + T + W q - U."""
+    workspace, size = compliance.workspace, patterns.count(compliance.workspace.levels)
+    for i in range(count):
+        face = workspace.order[i]
+        for a in range(size):
+            total = 0.0
+            for j in range(count):
+                force = workspace.force[workspace.order[j]]
+                for c in range(size):
+                    total += workspace.flexibility[i, j, a * size + c] * force[c]
+            workspace.change[i, a] = total - (
+                workspace.displacement[face, a]
+                - thermal_offset.offset(compliance.thermal_offset, face, a)
+                - modes.offset(compliance.modes, face, a)
+            )
+
+
+@kernel
+def _follow_pressed(workspace, count, pressed):
+    """Add to the ``change`` of the other faces what the ``pressed`` ones cause: -F K dU."""
+    size, following = patterns.count(workspace.levels), 0
+    for i in range(count):
+        if following < pressed and workspace.pressing[following] == i:
+            following += 1
+            continue
+        for j in workspace.pressing[:pressed]:
             block, stiffness = workspace.flexibility[i, j], workspace.stiffness[workspace.order[j]]
+            for c in range(size):
+                force = 0.0
+                for b in range(size):
+                    force += stiffness[c, b] * workspace.change[j, b]
+                for a in range(size):
+                    workspace.change[i, a] -= block[a * size + c] * force
+
+
+@kernel
+def fill_matrix(workspace, pressed):
+    """1 + F K over the ``pressed`` faces."""
+    size, pressing = patterns.count(workspace.levels), workspace.pressing
+    for i in range(pressed):
+        for j in range(pressed):
+            block = workspace.flexibility[pressing[i], pressing[j]]
+            stiffness = workspace.stiffness[workspace.order[pressing[j]]]
             for a in range(size):
                 for b in range(size):
                     total = 1.0 if i == j and a == b else 0.0

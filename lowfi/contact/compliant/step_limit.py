@@ -32,6 +32,7 @@ from tipoff.lowfi.contact.compliant.solution import (
     fill_matrix,
     solve_unless,
     take_flexibility,
+    take_pressed,
 )
 from tipoff.lowfi.contact.springs import along_width, outward, pad_point, relative_pose
 from tipoff.lowfi.contact.step_limit import friction_damping, inverse_mass
@@ -62,6 +63,7 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, touchi
                 dampers += friction_damping(
                     friction, now, platform, payload, body, base, outward(faces[face], base)
                 )
+        count = _keep_pressed(compliance.workspace, count)
         if count > 0:
             take_flexibility(compliance, count, place[0] + faces[0, 0], state)
             columns = _tangent(compliance, count)
@@ -72,6 +74,17 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, touchi
             )
             springs += rest + 2.0 * np.sqrt(linear * rest)
     return springs + square, dampers + drag
+
+
+@kernel
+def _keep_pressed(workspace, count):
+    """Keep in ``order`` the faces with a pressed cell; returns their number. The others have no K."""
+    pressed = take_pressed(workspace, count)
+    for i in range(count):
+        workspace.yielding[workspace.order[i]] = 0.0
+    for i in range(pressed):
+        workspace.order[i] = workspace.order[workspace.pressing[i]]
+    return take_pressed(workspace, pressed)
 
 
 @kernel
