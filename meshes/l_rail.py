@@ -60,7 +60,7 @@ def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
 
     Each interval between borders gets round(length / element_size) divisions, at least one. Along X
     all layers have the same length if a length near the element size divides every interval,
-    because an even extrusion is solved several times faster. With the default geometry all elements
+    because the solver needs fewer products for equal layers. With the default geometry all elements
     are cubes for sizes of 4, 2 and 1 mm. Contact walls end where a fillet begins.
 
     Returns a mesh with one `hexahedron` block (volume `rail`) and one `quad` block per surface in

@@ -1,8 +1,8 @@
 """Extruded rails of any section as hexahedra: quadrilaterals in the section, layers along X.
 
 Scene frame. Quadrilaterals fill the outline (``meshes.quadrilaterals``). The layers have one length if
-a length near the wanted one divides every interval between borders, because an even extrusion is
-solved several times faster (``l_rail.layer_length``). Mirror images have the same bits. A surface is
+a length near the wanted one divides every interval between borders, because the solver needs fewer
+products for equal layers (``l_rail.layer_length``). Mirror images have the same bits. A surface is
 known by the side of the section that it stands on; no box is needed.
 """
 

@@ -6,7 +6,8 @@ couple y with another direction, as on any even piece of a section. Then ``a u(+
 parallel units. Four neighbours mirrored in y and z need one product. A neighbour on a mirror plane
 has no odd numbers. A column inside a regular section needs 36 products instead of 9 x 14.
 
-The numbers of one neighbour are D xx yy yz zy zz, L the same and O xy xz yx zx, as in ``mesh``.
+The numbers of one neighbour are those of the blocks of its ``Layout``, as in ``mesh``: xx yy yz zy zz
+of the blocks that are even under the mirror x -> -x, then xy xz yx zx of O.
 """
 
 from itertools import pairwise, product
@@ -17,20 +18,22 @@ import numpy as np
 _SAME = 1e-12  # of the largest number; a smaller difference is rounding
 _GRID = 1e-7  # m, offsets are rounded to it before a comparison
 
-# (row, column) of each number; it changes sign under the mirror of a direction that is exactly one
-# of them.
-PLACES = (
-    *((i, j) for _ in "DL" for i, j in ((0, 0), (1, 1), (1, 2), (2, 1), (2, 2))),
-    (0, 1),
-    (0, 2),
-    (1, 0),
-    (2, 0),
-)
+# (row, column) of the numbers of a block that is even, and of one that is odd, under x -> -x
+EVEN_PLACES = ((0, 0), (1, 1), (1, 2), (2, 1), (2, 2))
+ODD_PLACES = ((0, 1), (0, 2), (1, 0), (2, 0))
 
 
-def odd(number: int, axis: int) -> bool:
-    """Whether a number changes sign under the mirror of ``axis`` (1 y, 2 z)."""
-    return (PLACES[number][0] == axis) != (PLACES[number][1] == axis)
+class Place(NamedTuple):
+    """Place of a number in the blocks of one neighbour."""
+
+    block: int
+    row: int
+    column: int
+
+    def odd(self, axis: int) -> bool:
+        """Whether the number changes sign under the mirror of ``axis`` (1 y, 2 z): if the axis is
+        exactly one of row and column."""
+        return (self.row == axis) != (self.column == axis)
 
 
 class Kind(NamedTuple):
@@ -38,7 +41,7 @@ class Kind(NamedTuple):
 
     # axes of the mirrors; order of the members: +, -; for both axes ++, -+, +-, --
     folded: tuple[int, ...]
-    numbers: tuple[int, ...]  # the numbers that are not zero
+    even: tuple[int, ...]  # axes in which odd numbers are zero
 
     @property
     def members(self) -> int:
@@ -46,36 +49,56 @@ class Kind(NamedTuple):
         return 2 ** len(self.folded)
 
 
-def _kind(folded: tuple[int, ...], even: tuple[int, ...]) -> Kind:
-    """The kind whose numbers that are odd in ``even`` axes are zero."""
-    return Kind(
-        folded, tuple(n for n in range(len(PLACES)) if not any(odd(n, axis) for axis in even))
-    )
-
-
 # Of kinds with the same members, the one with fewer numbers comes first.
 KINDS = (
-    _kind((1, 2), ()),
-    _kind((1,), (2,)),
-    _kind((1,), ()),
-    _kind((2,), (1,)),
-    _kind((2,), ()),
-    _kind((), (1, 2)),
-    _kind((), (1,)),
-    _kind((), (2,)),
-    _kind((), ()),
+    Kind((1, 2), ()),
+    Kind((1,), (2,)),
+    Kind((1,), ()),
+    Kind((2,), (1,)),
+    Kind((2,), ()),
+    Kind((), (1, 2)),
+    Kind((), (1,)),
+    Kind((), (2,)),
+    Kind((), ()),
 )
 
 
-# Number of groups of each kind in the most frequent columns: inside a section, on a side along y,
-# on a side along z.
-PATTERNS = ((1, 1, 0, 1, 0, 1, 0, 0, 0), (0, 0, 2, 0, 0, 0, 2, 0, 0), (0, 0, 0, 0, 2, 0, 0, 2, 0))
+class Layout(NamedTuple):
+    """Numbers of one neighbour."""
+
+    blocks: int  # of 3x3 numbers; the last one is odd under x -> -x
+    places: tuple[Place, ...]  # of each number
+    used: tuple[tuple[int, ...], ...]  # the numbers that are not zero, for each of KINDS
+
+
+def _layout(even: int) -> Layout:
+    """The layout of ``even`` even blocks and an odd one."""
+    places = [Place(block, *place) for block in range(even) for place in EVEN_PLACES]
+    places += [Place(even, *place) for place in ODD_PLACES]
+    used = [
+        tuple(n for n, place in enumerate(places) if not any(map(place.odd, kind.even)))
+        for kind in KINDS
+    ]
+    return Layout(even + 1, tuple(places), tuple(used))
+
+
+EQUAL, UNEQUAL = _layout(2), _layout(3)  # of equal layers, and of layers of any lengths
+
+# Number of groups of each kind in the most frequent columns of equal layers: inside a section, on a
+# side along y, on a side along z; None for any other number.
+PATTERNS = (
+    (1, 1, 0, 1, 0, 1, 0, 0, 0),
+    (0, 0, 2, 0, 0, 0, 2, 0, 0),
+    (0, 0, 0, 0, 2, 0, 0, 2, 0),
+)
+# Columns that have code of their own.
+VARIANTS = (*((EQUAL, pattern) for pattern in (*PATTERNS, None)), (UNEQUAL, None))
 
 
 class Groups(NamedTuple):
     """Groups of s columns, column by column, in the order of KINDS within each column."""
 
-    pattern: np.ndarray  # (s,) index in PATTERNS; the length of PATTERNS for any other pattern
+    variant: np.ndarray  # (s,) index in VARIANTS
     counts: np.ndarray  # (s, kinds) groups of each kind
     members: np.ndarray  # first nodes of the neighbours
     numbers: np.ndarray  # N/m
@@ -84,36 +107,41 @@ class Groups(NamedTuple):
 
 
 def fold(
-    first: np.ndarray, neighbour: np.ndarray, offsets: np.ndarray, numbers: np.ndarray
+    layout: Layout,
+    first: np.ndarray,
+    neighbour: np.ndarray,
+    offsets: np.ndarray,
+    numbers: np.ndarray,
 ) -> Groups:
     """Groups of the neighbours (q,) of each column, those of column i from ``first[i]`` on.
 
     ``offsets`` (q,2) m: place of the neighbour in the section minus that of the column; ``numbers``
-    (q,14) N/m.
+    (q,k) of the ``layout``.
     """
     limit, places = (
         _SAME * np.abs(numbers).max(),
         np.round(offsets / _GRID).astype(np.int64).tolist(),
     )
+    rules = _rules(layout)
     found = [
-        _groups({tuple(places[q]): q for q in range(a, b)}, numbers, limit)
+        _groups(rules, {tuple(places[q]): q for q in range(a, b)}, numbers, limit)
         for a, b in pairwise(first)
     ]
     counts = np.array([[len(groups) for groups in kinds] for kinds in found], dtype=np.int64)
     size = (
         np.array([kind.members for kind in KINDS]),
-        np.array([len(kind.numbers) for kind in KINDS]),
+        np.array([len(used) for used in layout.used]),
     )
     first_member, first_number = (
         np.concatenate([[0], np.cumsum(counts @ each)[:-1]]).astype(np.int64) for each in size
     )
     flat = [group for kinds in found for groups in kinds for group in groups]
-    pattern = [
-        PATTERNS.index(own) if (own := tuple(each)) in PATTERNS else len(PATTERNS)
+    variant = [
+        VARIANTS.index((layout, own if (layout, own := tuple(each)) in VARIANTS else None))
         for each in counts.tolist()
     ]
     return Groups(
-        pattern=np.array(pattern),
+        variant=np.array(variant),
         counts=counts,
         members=neighbour[np.concatenate([members for members, _ in flat])].astype(np.int64),
         numbers=np.concatenate([values for _, values in flat]),
@@ -122,23 +150,42 @@ def fold(
     )
 
 
-def _groups(at: dict, numbers: np.ndarray, limit: float) -> list[list]:
+class _Rule(NamedTuple):
+    """How the numbers of the members of a kind of group become those of the group."""
+
+    mirrors: list[tuple[int, int]]  # signs of (dy, dz) of the members
+    signs: np.ndarray  # (members, k) of each number
+    used: list[int]
+    absent: list[int]  # numbers that must be zero
+
+
+def _rules(layout: Layout) -> list[_Rule]:
+    """The rules of all KINDS."""
+    rules = []
+    for kind, used in zip(KINDS, layout.used):
+        mirrors = _mirrors(kind)
+        signs = np.array([_signs(layout, each) for each in mirrors])
+        absent = sorted(set(range(len(layout.places))) - set(used))
+        rules.append(_Rule(mirrors, signs, list(used), absent))
+    return rules
+
+
+def _groups(rules: list[_Rule], at: dict, numbers: np.ndarray, limit: float) -> list[list]:
     """For each kind the groups (members, numbers) of one column; ``at``: its neighbours by
     offset."""
     left = dict(at)
-    found: list[list] = [[] for _ in KINDS]
-    for number, kind in enumerate(KINDS):
+    found: list[list] = [[] for _ in rules]
+    for rule, groups in zip(rules, found):
         for offset in at if left else ():
-            places = [(y * offset[0], z * offset[1]) for y, z in _MIRRORS[number]]
+            places = [(y * offset[0], z * offset[1]) for y, z in rule.mirrors]
             if len(set(places)) < len(places) or not left.keys() >= set(places):
                 continue
-            folded = numbers[[at[place] for place in places]] * _SIGNS[number]
+            folded = numbers[[at[place] for place in places]] * rule.signs
             mean = folded.mean(axis=0)
             if np.abs(folded - mean).max() <= limit and (
-                np.abs(mean[_ABSENT[number]]).max(initial=0.0) <= limit
+                np.abs(mean[rule.absent]).max(initial=0.0) <= limit
             ):
-                own = [left.pop(place) for place in places]
-                found[number].append((own, mean[list(kind.numbers)]))
+                groups.append(([left.pop(place) for place in places], mean[rule.used]))
     return found
 
 
@@ -149,15 +196,9 @@ def _mirrors(kind: Kind) -> list[tuple[int, int]]:
     ]
 
 
-def _signs(signs: tuple[int, int]) -> list[int]:
+def _signs(layout: Layout, signs: tuple[int, int]) -> list[int]:
     """Sign of each number at the member with these signs."""
     return [
-        int(np.prod([sign for axis, sign in zip((1, 2), signs) if odd(n, axis)]))
-        for n in range(len(PLACES))
+        int(np.prod([sign for axis, sign in zip((1, 2), signs) if place.odd(axis)]))
+        for place in layout.places
     ]
-
-
-_MIRRORS = [_mirrors(kind) for kind in KINDS]
-_SIGNS = [np.array([_signs(signs) for signs in mirrors]) for mirrors in _MIRRORS]
-# The numbers that are zero in each kind.
-_ABSENT = [[n for n in range(len(PLACES)) if n not in kind.numbers] for kind in KINDS]

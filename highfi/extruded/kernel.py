@@ -1,10 +1,17 @@
-"""Internal force of an extruded mesh: three sums over the neighbouring columns for each column,
-then a filter along the layers.
+"""Internal force of an extruded mesh: sums over the neighbouring columns for each column, then a
+filter along the layers. With the blocks of ``mesh``, for equal layers
 
     d = sum D u,  l = sum L u,  o = sum O u,      f(k) = d(k) + (l - o)(k-1) + (l + o)(k+1)
 
-The nine sums of 16 layers stay in vector registers during the loop over the neighbours; so do the
-values of the 16 layers before that the filter needs. Neighbours that are mirror images are folded
+and for layers of any length h(k), from node k to k+1, with the weights v and w of Q and R
+
+    q = sum Q u,  r = sum R u,  s = sum S u,  o = sum O u
+    f(k) = [v(k-1) + v(k)] q(k) + [w(k-1) + w(k)] r(k)
+           + h(k-1) s(k-1) - v(k-1) q(k-1) - w(k-1) r(k-1) - o(k-1)
+           + h(k) s(k+1) - v(k) q(k+1) - w(k) r(k+1) + o(k+1)
+
+The sums of 16 layers, nine or twelve, stay in vector registers during the loop over the neighbours; so
+do the values of the 16 layers before that the filter needs. Neighbours that are mirror images are folded
 into one (see ``folding``). Numba does not keep the sums in registers in a Python loop, so this loop
 is written as LLVM code. A processor with narrower vectors splits them.
 """
@@ -17,18 +24,13 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from tipoff.highfi.extruded.folding import KINDS, PATTERNS, PLACES, odd
+from tipoff.highfi.extruded.folding import EQUAL, KINDS, VARIANTS, Layout
 from tipoff.highfi.extruded.mesh import LANES
 from tipoff.highfi.extruded.vectors import INTEGER, WIDTH, ZERO, Vectors
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 
 _HALVES = LANES // WIDTH
-_SUMS = 9
-# The sum each number goes to: sums 0-2 are d, 3-5 are l, 6-8 are o.
-_TARGETS = tuple(
-    3 * (0 if n < 5 else 1 if n < 10 else 2) + row for n, (row, _) in enumerate(PLACES)
-)
 
 
 class _Arrays(NamedTuple):
@@ -38,7 +40,7 @@ class _Arrays(NamedTuple):
     members: np.ndarray  # see ``folding.Groups``
     numbers: np.ndarray
     counts: np.ndarray
-    weights: np.ndarray  # share of D in each layer, then WIDTH zeros
+    weights: np.ndarray  # see ``mesh.Columns``
     force: np.ndarray  # (3 * plane,) N
     lanes: np.ndarray  # (3 * WIDTH,) N m, sums of u x f
 
@@ -46,7 +48,7 @@ class _Arrays(NamedTuple):
 class _Place(NamedTuple):
     """Place of one column in the arrays."""
 
-    pattern: int  # index in PATTERNS
+    variant: int  # index in VARIANTS
     kind: int  # its first entry in ``counts``
     first_member: int
     first_number: int
@@ -56,12 +58,15 @@ class _Place(NamedTuple):
 
 
 class _Sweep:
-    """Writes the code that sets the force of one column. Fields of ``arrays`` are LLVM pointers,
-    fields of ``place`` LLVM integers."""
+    """Writes the code that sets the force of one column with this ``layout``. Fields of ``arrays`` are
+    LLVM pointers, fields of ``place`` LLVM integers."""
 
-    def __init__(self, builder, arrays: _Arrays, place: _Place):
+    def __init__(self, builder, layout: Layout, arrays: _Arrays, place: _Place):
         self.builder, self.code, self.arrays, self.place = builder, Vectors(builder), arrays, place
-        self.held = [[self.code.variable() for _ in range(_HALVES)] for _ in range(_SUMS)]
+        self.layout = layout
+        self.held = [
+            [self.code.variable() for _ in range(_HALVES)] for _ in range(3 * layout.blocks)
+        ]
         self.below, self.pending, self.turning = (
             [self.code.variable() for _ in range(3)] for _ in range(3)
         )
@@ -95,7 +100,7 @@ class _Sweep:
 
     def _add_groups(self, layer, pattern):
         code, member, number = self.code, self.place.first_member, self.place.first_number
-        for k, group in enumerate(KINDS):
+        for k, (group, used) in enumerate(zip(KINDS, self.layout.used)):
             count = (
                 ir.Constant(INTEGER, pattern[k])
                 if pattern
@@ -103,39 +108,40 @@ class _Sweep:
             )
             if pattern:
                 for index in range(pattern[k]):
-                    self._add_group(group, layer, member, number, ir.Constant(INTEGER, index))
+                    self._add_group(k, layer, member, number, ir.Constant(INTEGER, index))
             else:
                 with cgutils.for_range(self.builder, count, intp=INTEGER) as loop:
-                    self._add_group(group, layer, member, number, loop.index)
+                    self._add_group(k, layer, member, number, loop.index)
             member = self.builder.add(member, code.times(count, group.members))
-            number = self.builder.add(number, code.times(count, len(group.numbers)))
+            number = self.builder.add(number, code.times(count, len(used)))
 
-    def _add_group(self, group, layer, member, number, index):
-        """Add the products of the group with this ``index``; its members and numbers start at
-        ``member`` and ``number``."""
-        code, builder = self.code, self.builder
+    def _add_group(self, kind, layer, member, number, index):
+        """Add the products of the group of a ``kind`` with this ``index``; its members and numbers
+        start at ``member`` and ``number``."""
+        code, builder, places = self.code, self.builder, self.layout.places
+        group, used = KINDS[kind], self.layout.used[kind]
         at = builder.add(member, code.times(index, group.members))
         starts = [
             builder.add(code.number(self.arrays.members, code.plus(at, m)), layer)
             for m in range(group.members)
         ]
-        own = builder.add(number, code.times(index, len(group.numbers)))
+        own = builder.add(number, code.times(index, len(used)))
         for component in range(3):
             rows = [builder.add(start, code.times(self.place.plane, component)) for start in starts]
             factors = {
-                n: code.spread(code.number(self.arrays.numbers, code.plus(own, k)))
-                for k, n in enumerate(group.numbers)
-                if PLACES[n][1] == component
+                places[n]: code.spread(code.number(self.arrays.numbers, code.plus(own, k)))
+                for k, n in enumerate(used)
+                if places[n].column == component
             }
             for half in range(_HALVES):
                 folded = self._fold(
                     group,
                     [code.read(self.arrays.values, code.plus(row, WIDTH * half)) for row in rows],
                 )
-                for n, factor in factors.items():
+                for place, factor in factors.items():
                     total, value = (
-                        self.held[_TARGETS[n]][half],
-                        folded[tuple(odd(n, axis) for axis in group.folded)],
+                        self.held[3 * place.block + place.row][half],
+                        folded[tuple(map(place.odd, group.folded))],
                     )
                     builder.store(code.multiply_add(factor, value, builder.load(total)), total)
 
@@ -164,28 +170,38 @@ class _Sweep:
     def _filter(self, layer, component):
         """One component of the eight waiting forces and of the next eight."""
         code, add = self.code, self.builder.fadd
-        weights = [
-            code.read(self.arrays.weights, code.plus(layer, WIDTH * half))
-            for half in range(_HALVES)
-        ]
-        own, even, odds = (
-            [self.builder.load(part) for part in self.held[3 * k + component]] for k in range(3)
-        )
-        below, above = (
-            [combine(one, other) for one, other in zip(even, odds)]
-            for combine in (self.builder.fsub, add)
-        )
+        parts = _equal if self.layout == EQUAL else _unequal
+        own, below, above = zip(*(parts(self, layer, component, half) for half in range(_HALVES)))
         last, pending = self.below[component], self.pending[component]
         before = add(self.builder.load(pending), code.slide(ZERO, above[0], 1))
         around = add(
             code.slide(self.builder.load(last), below[0], WIDTH - 1),
             code.slide(above[0], above[1], 1),
         )
-        here = code.multiply_add(weights[0], own[0], around)
+        here = self._sum(own[0], around)
         around = add(code.slide(below[0], below[1], WIDTH - 1), code.slide(above[1], ZERO, 1))
-        self.builder.store(code.multiply_add(weights[1], own[1], around), pending)
+        self.builder.store(self._sum(own[1], around), pending)
         self.builder.store(below[1], last)
         return before, here
+
+    def _sum(self, products, total):
+        """``total`` and all ``products`` of two factors."""
+        for factor, other in products:
+            total = self.code.multiply_add(factor, other, total)
+        return total
+
+    def sums(self, component, half):
+        """One component of the sums of all blocks, of eight layers."""
+        return [
+            self.builder.load(self.held[3 * block + component][half])
+            for block in range(self.layout.blocks)
+        ]
+
+    def weights(self, row, layer, half):
+        """Eight of the weights in a ``row``, see ``mesh.Columns``."""
+        length = self.code.plus(self.place.layers, LANES)
+        start = self.builder.add(self.code.times(length, row), layer)
+        return self.code.read(self.arrays.weights, self.code.plus(start, WIDTH * half))
 
     def _store(self, force, layer, void=None):
         """Store eight forces and add their u x f, unless ``void``."""
@@ -195,7 +211,8 @@ class _Sweep:
         ]
         places = [self.builder.gep(self.arrays.values, [row]) for row in rows]
         if void:
-            nothing = self.builder.gep(self.arrays.weights, [self.place.layers])
+            zeros = self.code.plus(self.place.layers, LANES - WIDTH)
+            nothing = self.builder.gep(self.arrays.weights, [zeros])
             places = [self.builder.select(void, nothing, place) for place in places]
         values = [code.read(place, ir.Constant(INTEGER, 0)) for place in places]
         for component, (j, k) in enumerate(((1, 2), (2, 0), (0, 1))):
@@ -207,6 +224,33 @@ class _Sweep:
                 code.multiply_add(self.builder.fneg(values[k]), force[j], total),
                 self.turning[component],
             )
+
+
+def _equal(sweep, layer, component, half):
+    """Products whose sum is the contribution of eight nodes to their own force, and the contributions
+    to the nodes above and below them, for equal layers."""
+    own, even, odd = sweep.sums(component, half)
+    weight = sweep.weights(0, layer, half)
+    return [(weight, own)], sweep.builder.fsub(even, odd), sweep.builder.fadd(even, odd)
+
+
+def _unequal(sweep, layer, component, half):
+    """The same for layers of any lengths."""
+    builder, code = sweep.builder, sweep.code
+    *sums, odd = sweep.sums(component, half)
+    here = code.plus(layer, WIDTH)
+    after, before = (
+        [sweep.weights(row, place, half) for row in range(len(sums))]
+        for place in (here, code.plus(here, -1))
+    )
+    contributions = []
+    for (v, w, length), total in ((after, builder.fneg(odd)), (before, odd)):
+        factors = (builder.fneg(v), builder.fneg(w), length)
+        for factor, value in zip(factors, sums):
+            total = code.multiply_add(factor, value, total)
+        contributions.append(total)
+    own = [(builder.fadd(one, other), value) for one, other, value in zip(before, after, sums[:2])]
+    return own, *contributions
 
 
 @intrinsic
@@ -225,18 +269,17 @@ def _column(typing, arrays, place):
             )
         )
         at = _Place(*cgutils.unpack_tuple(builder, arguments[1]))
-        sweep = _Sweep(builder, pointers, at)
-        other, after = (builder.append_basic_block(name) for name in ("other", "after"))
-        switch = builder.switch(at.pattern, other)
-        for number, pattern in enumerate(PATTERNS):
-            block = builder.append_basic_block("pattern")
-            switch.add_case(ir.Constant(INTEGER, number), block)
+        sweeps = {layout: _Sweep(builder, layout, pointers, at) for layout, _ in VARIANTS}
+        last, after = (builder.append_basic_block(name) for name in ("variant", "after"))
+        switch = builder.switch(at.variant, last)
+        for number, (layout, pattern) in enumerate(VARIANTS):
+            block = last
+            if number < len(VARIANTS) - 1:
+                block = builder.append_basic_block("variant")
+                switch.add_case(ir.Constant(INTEGER, number), block)
             builder.position_at_end(block)
-            sweep.write(pattern)
+            sweeps[layout].write(pattern)
             builder.branch(after)
-        builder.position_at_end(other)
-        sweep.write(None)
-        builder.branch(after)
         builder.position_at_end(after)
         return context.get_dummy_value()
 
@@ -268,7 +311,7 @@ def column_force(columns, displacement, force, first, last, lanes, turn):
     )
     for point in range(first, last):
         place = _Place(
-            pattern=groups.pattern[point],
+            variant=groups.variant[point],
             kind=point * kinds,
             first_member=groups.first_member[point],
             first_number=groups.first_number[point],

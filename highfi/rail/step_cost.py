@@ -107,7 +107,7 @@ def _seconds(mesh: RailMesh, scene: Scene, step: float) -> float:
     count, nodes = mesh.cells.shape
     is_shared = len(assembly.shape_classes(mesh)[1]) < _FEW * count
     element = (_SHARED if is_shared else _OWN)[nodes]
-    if is_shared and nodes == 8 and extruded.is_even(mesh.points):
+    if is_shared and nodes == 8 and extruded.is_extruded(mesh.points):
         element = _COLUMNS
     return 1e-9 * (_STEP + element * count) * scene.expected_end / step
 

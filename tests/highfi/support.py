@@ -13,7 +13,7 @@ from tipoff.highfi.dynamics import resting
 from tipoff.highfi.dynamics.resting import Rails
 from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import Stepping, choose
-from tipoff.highfi.dynamics.system import System, build
+from tipoff.highfi.dynamics.system import System, build, general_elements
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.simulation import Loop
@@ -184,10 +184,20 @@ def parts(scene, numerics: Numerics = COARSE) -> tuple[System, Stepping, Rails |
     return _PARTS[key]
 
 
-def begun(scene=None, numerics: Numerics = COARSE, threads: int = 1) -> Loop:
-    """A loop at its first sample, as ``highfi.run`` makes it."""
+def without_columns(system: System) -> System:
+    """``system`` for the kernel of elements, as if its rails were no extrusion."""
+    assert system.rail.columns is not None
+    elements = general_elements(system.mesh.points, system.operator, system.number)
+    return system._replace(rail=system.rail._replace(columns=None, elements=elements))
+
+
+def begun(scene=None, numerics: Numerics = COARSE, threads: int = 1, columns: bool = True) -> Loop:
+    """A loop at its first sample, as ``highfi.run`` makes it, or ``without_columns``."""
     scene = scene or tiny()
     system, stepping, rails = parts(scene, numerics)
+    if not columns:
+        system = without_columns(system)
+        rails = resting.build(scene, system, stepping)
     loop = Loop(set_up(scene, system, stepping, threads, rails))
     loop.begin()
     return loop

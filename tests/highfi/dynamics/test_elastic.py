@@ -6,11 +6,17 @@ import os
 import numpy as np
 import pytest
 
-from tests.highfi.support import SOON, assert_same_bits, parts, replace_constants, tiny
+from tests.highfi.support import (
+    SOON,
+    assert_same_bits,
+    parts,
+    replace_constants,
+    tiny,
+    without_columns,
+)
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
-from tipoff.highfi.dynamics.system import general_elements
 from tipoff.highfi.simulation import Loop
 from tipoff.highfi.state.threads import processors
 
@@ -22,14 +28,11 @@ TWO_SCENES = pytest.mark.parametrize(
 
 
 def begun(kernel: str, named: str, threads: int = 1, **overrides) -> Loop:
-    """A run on the extruded rails of ``tiny`` at its first sample; "elements" makes the loop forget
-    that they are extruded."""
+    """A run on the extruded rails of ``tiny`` at its first sample, by columns or by elements."""
     scene = tiny(**SCENES[named], **overrides)
     system = parts(scene, NUMERICS)[0]
-    assert system.rail.columns is not None
     if kernel == "elements":
-        elements = general_elements(system.mesh.points, system.operator, system.number)
-        system = system._replace(rail=system.rail._replace(columns=None, elements=elements))
+        system = without_columns(system)
     loop = Loop(set_up(scene, system, choose(system, scene, NUMERICS), threads))
     loop.begin()
     return loop

@@ -27,6 +27,17 @@ def graded(divisions, size):
     return replace(mesh, points=points)
 
 
+def layers_of(lengths):
+    """A brick without symmetry in the section, of layers with these ``lengths`` (m)."""
+    stations = np.concatenate([[0.0], np.cumsum(lengths)])
+    divisions = (len(lengths), 5, 4)
+    mesh = graded(divisions, (float(stations[-1]), 0.02, 0.03))
+    even = np.linspace(0.0, stations[-1], stations.size)
+    points = mesh.points.copy()
+    points[:, 0] = stations[np.searchsorted(even, points[:, 0] - 1e-9)]
+    return replace(mesh, points=points)
+
+
 def groups_of(mesh):
     """Places (s,2) of the section points, and how many products and how many folded groups each has
     per layer."""
@@ -37,7 +48,10 @@ def groups_of(mesh):
     counts = columns.groups.counts
     return places, *(
         counts @ np.array(size)
-        for size in zip(*((len(kind.numbers), len(kind.folded) > 0) for kind in folding.KINDS))
+        for size in (
+            [len(used) for used in folding.EQUAL.used],
+            [len(kind.folded) > 0 for kind in folding.KINDS],
+        )
     )
 
 
@@ -70,6 +84,17 @@ def both_forces(mesh):
         pytest.param(graded((6, 5, 4), (0.03, 0.02, 0.02)), id="no symmetry in the section"),
         pytest.param(block((3, 2, 2), (0.03, 0.02, 0.03)), id="three layers"),
         pytest.param(block((40, 3, 4), (0.6, 0.03, 0.04)), id="cantilever"),
+        pytest.param(
+            read(l_rail.build(l_rail.LRailGeometry(fillet=0.002), 0.008)),
+            id="two lengths of layers",
+        ),
+        pytest.param(
+            block((2, 3, 4), (0.03, 0.03, 0.04), stations=[0.0, 0.001, 0.03]), id="two layers"
+        ),
+        pytest.param(layers_of(lengths=1e-3 * 1.1 ** np.arange(40.0)), id="growing layers"),
+        pytest.param(
+            layers_of(lengths=[0.004, 0.004 + 3e-9, 0.004 + 5e-9] * 9), id="almost equal layers"
+        ),
     ],
 )
 def test_columns_give_the_force_of_the_elements(mesh):
@@ -101,10 +126,25 @@ def test_padding_stays_without_force():
     assert padding.any() and (force[:, padding] == 0.0).all()
 
 
-def test_uneven_and_distorted_meshes_are_left_to_the_element_kernel():
-    uneven = block((4, 2, 2), (0.04, 0.02, 0.02), stations=[0.0, 0.01, 0.02, 0.035, 0.04])
-    bent = block((4, 2, 2), (0.04, 0.02, 0.02))
-    points = bent.points.copy()
-    points[len(points) // 2, 1] += 1e-3
-    for mesh in (uneven, replace(bent, points=points)):
+def test_meshes_that_are_no_extrusion_are_left_to_the_element_kernel():
+    straight = block((4, 2, 2), (0.04, 0.02, 0.02), stations=[0.0, 0.01, 0.02, 0.035, 0.04])
+    bent = straight.points.copy()
+    bent[len(bent) // 2, 1] += 1e-3
+    oblique = straight.points + [[1.0, 0.0, 0.0]] * straight.points[:, 1:2] * 0.1
+    for mesh in (
+        replace(straight, points=bent),
+        replace(straight, points=oblique),
+        replace(straight, cells=straight.cells[:-1]),
+    ):
         assert extruded.find(mesh.points, assembly.build(mesh, **ALUMINIUM)) is None
+    assert extruded.find(straight.points, assembly.build(straight, **ALUMINIUM)) is not None
+
+
+def test_a_layer_of_another_material_is_left_to_the_element_kernel():
+    """Its blocks do not follow from its length."""
+    mesh = block((4, 2, 2), (0.04, 0.02, 0.02), stations=[0.0, 0.01, 0.02, 0.035, 0.04])
+    operator = assembly.build(mesh, **ALUMINIUM)
+    for stiff in range(len(operator.stiffness)):
+        changed = operator.stiffness.copy()
+        changed[stiff] *= 1.0 + 1e-6
+        assert extruded.find(mesh.points, operator._replace(stiffness=changed)) is None
