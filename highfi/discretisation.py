@@ -15,8 +15,8 @@ shows less than half of the error. The finer mesh is solved for few loads, by co
 The preconditioner is the solution on the mesh itself plus the diagonal of the finer stiffness. The
 compliance f'x + x'(f - K x) is then below the exact one only by the squared energy norm of the
 error. Elements that are many times as long as a wall is thick make it converge slowly: the finer ones
-follow the bending of a wall that the others do not. As soon as the iteration has taken as long as the
-factor of a slender rail on the finer mesh (``statics.chain``) would, that takes its place.
+follow the bending of a wall that the others do not. As soon as the iteration is expected to take as
+long again as the factor of a slender rail on the finer mesh (``statics.chain``), that takes its place.
 
 Sources: Roache, J. Fluids Eng. 116 (1994) 405, the factor of a known order; Strang and Fix, An
 Analysis of the Finite Element Method, 1973, chapter 8, the rate at singular points; Saad, Iterative
@@ -59,6 +59,7 @@ MOST_BYTES = 4e9  # on the finer mesh
 _ROWS = 6  # of each load, in the iteration
 _ACCURACY = 1e-4  # of the compliance, in the norm of the preconditioner
 _MOST_ITERATIONS = 500
+_TRIED = 5  # iterations before their number is estimated
 _SMOOTHING = 0.5  # share of the diagonal in the preconditioner
 _ITERATION = 3e-7  # s for each element and load, on an AMD EPYC at 2.6 GHz as those of ``chain``
 # on the finer mesh, for each element: the matrix while it is assembled
@@ -186,9 +187,10 @@ def _pair(
     swung = fine.mass * fine.interpolated(shape.T)
     every, count = np.concatenate([pressed, swung]), len(pressed)
     most = _iterations(held, finer, len(every))
-    solved = _solved(fine, every, min(most, _MOST_ITERATIONS))
+    may_factor = most <= _MOST_ITERATIONS
+    solved = _solved(fine, every, min(most, _MOST_ITERATIONS), may_factor)
     if solved is None:
-        if most > _MOST_ITERATIONS:
+        if not may_factor:
             return None
         products = _factored(operator, every)
         # the modes on the mesh itself are nearly those on the finer one: Ritz values of the inverse
@@ -278,14 +280,17 @@ class _Finer:
         return found
 
 
-def _solved(fine: _Finer, loads: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray] | None:
+def _solved(
+    fine: _Finer, loads: np.ndarray, most: int, ends_early: bool
+) -> tuple[np.ndarray, np.ndarray] | None:
     """Displacement (l,3n) under ``loads`` (l,3n) and its residual (l,3n), by conjugate gradients for
-    all loads; None if they do not converge in ``most`` iterations."""
+    all loads; None if they do not converge in ``most`` iterations, or, if it ``ends_early``, if so many
+    more are expected to be left."""
     moved, rest = np.zeros_like(loads), loads.copy()
     towards = np.zeros_like(loads)
     before, report, nearest = np.ones(len(loads)), reported(), 0.0
     with one_thread():
-        for _ in range(most):
+        for done in range(most):
             better = fine.nearly_solved(rest)
             now = _products(rest, better)
             least = np.abs(_products(loads, moved))
@@ -295,6 +300,8 @@ def _solved(fine: _Finer, loads: np.ndarray, most: int) -> tuple[np.ndarray, np.
                 far = max(float((now[known] / least[known]).max()), _ACCURACY)
                 nearest = max(nearest, min(math.log(far) / math.log(_ACCURACY), 1.0))
                 report(nearest, ITERATION)
+                if ends_early and done >= _TRIED and done * (1.0 - nearest) > most * nearest:
+                    return None
             towards *= _ratio(now, before)[:, None]
             towards += better
             pulled = fine.force(towards)

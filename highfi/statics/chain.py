@@ -30,8 +30,9 @@ from scipy.sparse import csc_array, csr_array
 from tipoff.highfi.statics.local_loads import LocalLoads
 
 # Measured on an AMD EPYC at 2.6 GHz, s: a chain for each cube of a layer's width and for each layer,
-# and a sparse factor for each load and each square of a width
+# a sparse factor for each load and each square of a width, and products alone for each cube
 _CUBE, _LAYER, _SQUARE = 3e-10, 1.5e-3, 1.1e-9
+_CUBE_OF_PRODUCTS = 1e-10
 _MOST_BYTES = 4e9  # of both matrices of each layer
 _PASSES = 3  # of the search: it ends with the whole layer at one end as its start
 
@@ -63,8 +64,9 @@ def _levels(matrix: csr_array, start: np.ndarray) -> list[np.ndarray]:
 
 
 def seconds(count: float, width: float) -> float:
-    """About the time (s) to factor ``count`` layers of ``width`` degrees of freedom."""
-    return count * (_CUBE * width**3 + _LAYER)
+    """About the time (s) of ``Layered.products`` with ``count`` layers of ``width`` degrees of
+    freedom."""
+    return count * (_CUBE_OF_PRODUCTS * width**3 + _LAYER)
 
 
 def is_cheaper(order: list[np.ndarray], loads: int) -> bool:

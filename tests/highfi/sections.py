@@ -79,4 +79,5 @@ def pad() -> Faces:
         relief=0.0 * one,
         wall=0.0 * one,
         pad=np.array([0]),
+        guide=np.array([0]),
     )

@@ -46,6 +46,7 @@ def pads(*middles, half_length=HALF):
         0.0 * ones,
         HEIGHT * ones,
         np.arange(count),
+        np.arange(count),
     )
 
 

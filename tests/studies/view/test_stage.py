@@ -241,7 +241,7 @@ def test_pictures_are_drawn_and_embedded(viewed, monkeypatch):
     study, made = viewed
     found = made.document
     folder = study.path(found["folder"])
-    result = view.read(found)
+    result = made.result
     short = replace(result, frames=result.frames[:4], peak=replace(result.peak, frame=3))
     drawn, why = view.draw_pictures(short, folder)
     names = ["peak.png", "ejection.webp", "peak-dark.png", "ejection-dark.webp"]

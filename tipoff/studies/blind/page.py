@@ -13,17 +13,18 @@ def draw(found: Blind) -> list[Part]:
     """The section."""
     compliant, calibrated = found.compliant, found.calibrated
     origin = (
-        " (a digest of the sources and the scene, so other code draws other conditions)"
+        ", a digest of the sources and the scene: other code draws other conditions"
         if found.asked.seed is None
         else ""
     )
     note = (
-        f"Drawn from the distributions “{found.errors}” with seed {found.seed}{origin}. "
         "Every condition has its own floor and its own uncertainty of the reference by mesh, "
         "step and contact cells. A condition is judged as a distribution if its reference is "
         "not converged, or if 1 µm changes a settled rate by more than the limit of agreement."
     )
     return [
+        f"{len(found.conditions)} conditions drawn with seed {found.seed}{origin}, from the "
+        f"distributions “{found.errors}”.",
         f"Compliant contact, no fitted constants: {summary(compliant)}.",
         judged(compliant, "blind-compliant", (note,)),
         f"Calibrated springs: {summary(calibrated)}.",
