@@ -7,6 +7,8 @@ import numpy as np
 
 from tipoff.mechanics.rail_compliance import pairs
 
+_AT_ONCE = 1e7  # bytes of a table between faces
+_SHORT = 4  # stations, below which the equations of the slopes are others
 _STRAIGHT = 1e-9  # in xi; smaller changes of a slope are rounding
 
 
@@ -22,7 +24,9 @@ def cubic(
     given = breaks or [()] * values.shape[1]
     for own in set(given):
         same = [number for number, each in enumerate(given) if each == own]
-        found[:, same] = _between(travel, values[:, same], own)
+        rows = values[:, same].reshape(len(travel), -1)
+        spline = _between(travel, rows, own).swapaxes(1, 2)
+        found[:, same] = spline.reshape(-1, len(same), *values.shape[2:], 4)
     return found
 
 
@@ -37,25 +41,66 @@ def between_faces(
     (``pairs``), in the patterns of the parts that ``on_part`` (s,f,q,q) turns those of whole faces into.
     A slope may jump at the ``breaks`` of either face."""
     stations, faces, members, size, _ = table.shape
-    part = pairs.on_both_sides(on_part[..., :size, :size].swapaxes(-1, -2), table, rail)
-    own = [
-        tuple(sorted({*each, *(breaks[face] if face >= 0 else ())}))
-        for each, near in zip(breaks, pairs.beside(rail))
-        for face in near
+    part = on_part[..., :size, :size].swapaxes(-1, -2)
+    found = np.zeros((stations - 1, faces, members, 4, size * size))
+    every = [
+        (face, place, other)
+        for face, near in enumerate(pairs.beside(rail))
+        for place, other in enumerate(near)
+        if other >= 0
     ]
-    found = cubic(travel, part.reshape(stations, faces * members, size, size), own)
-    found = found.transpose(0, 1, 4, 2, 3).reshape(stations - 1, faces, members, 4, -1)
-    return np.ascontiguousarray(found)
+    alike: dict[tuple[int, ...], list] = {}
+    for pair in every:
+        own = tuple(sorted({*breaks[pair[0]], *breaks[pair[2]]}))
+        alike.setdefault(own, []).append(pair)
+    most = max(1, int(_AT_ONCE / (8 * stations * size**2)))
+    for own, those in alike.items():
+        for first in range(0, len(those), most):  # the table of a long rail is large
+            face, place, other = np.array(those[first : first + most]).T
+            block = part[:, face] @ table[:, face, place] @ part[:, other].swapaxes(-1, -2)
+            spline = _between(travel, block.reshape(stations, -1), own)
+            spline = spline.reshape(stations - 1, 4, face.size, -1)
+            found[:, face, place] = spline.swapaxes(1, 2)
+    return found
 
 
 def _between(travel: np.ndarray, values: np.ndarray, breaks: tuple[int, ...]) -> np.ndarray:
+    """Splines (s-1,4,k) through ``values`` (s,k), each between two of the ``breaks`` without knots at
+    the second and the last but one of its stations."""
     from scipy.interpolate import CubicSpline
 
-    parts = [
-        CubicSpline(travel[first : last + 1], values[first : last + 1]).c[::-1]
-        for first, last in itertools.pairwise((0, *breaks, len(travel) - 1))
-    ]
-    return np.moveaxis(np.concatenate(parts, axis=1), 0, -1)
+    found = np.empty((len(travel) - 1, 4, values.shape[1]))
+    for first, last in itertools.pairwise((0, *breaks, len(travel) - 1)):
+        x, y = travel[first : last + 1], values[first : last + 1]
+        out = found[first:last]
+        if len(x) < _SHORT:
+            out[:] = CubicSpline(x, y).c[::-1].swapaxes(0, 1)
+            continue
+        step = np.diff(x)[:, None]
+        rise = np.diff(y, axis=0) / step
+        slope = _slopes(x, y, step, rise)
+        bend = (slope[:-1] + slope[1:] - 2 * rise) / step
+        out[:, 0], out[:, 1] = y[:-1], slope[:-1]
+        out[:, 2], out[:, 3] = (rise - slope[:-1]) / step - bend, bend / step
+    return found
+
+
+def _slopes(x: np.ndarray, y: np.ndarray, step: np.ndarray, rise: np.ndarray) -> np.ndarray:
+    """Slopes (s,k) of the spline through ``y`` (s,k) at ``x`` (s,). That of SciPy checks and copies the
+    values several times, which takes longer than the solution."""
+    from scipy.linalg import solve_banded
+
+    dx = step[:, 0]
+    matrix, right = np.zeros((3, len(x))), np.empty_like(y)
+    matrix[1, 1:-1], matrix[0, 2:], matrix[2, :-2] = 2 * (dx[:-1] + dx[1:]), dx[:-1], dx[1:]
+    right[1:-1] = 3 * (step[1:] * rise[:-1] + step[:-1] * rise[1:])
+    ahead, behind = x[2] - x[0], x[-1] - x[-3]
+    matrix[1, 0], matrix[0, 1], matrix[1, -1], matrix[2, -2] = dx[1], ahead, dx[-2], behind
+    right[0] = ((step[0] + 2 * ahead) * step[1] * rise[0] + step[0] ** 2 * rise[1]) / ahead
+    right[-1] = (step[-1] ** 2 * rise[-2] + (2 * behind + step[-1]) * step[-2] * rise[-1]) / behind
+    return solve_banded(
+        (1, 1), matrix, right, overwrite_ab=True, overwrite_b=True, check_finite=False
+    )
 
 
 def breaks(part: np.ndarray) -> list[tuple[int, ...]]:
