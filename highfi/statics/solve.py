@@ -25,10 +25,24 @@ def one_thread():
     return _libraries().limit(limits=1, user_api="blas")
 
 
+def _factored(stiffness: csc_array):
+    """The sparse factor. Raises MemoryError, with the remedy, if it does not fit into memory."""
+    try:
+        return splu(
+            stiffness,
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    except MemoryError:
+        freedoms = f"the statics of a rail with {stiffness.shape[0]:,} degrees of freedom"
+        raise MemoryError(f"{freedoms}; larger elements need less: --element-size") from None
+
+
 class Clamped:
     """The ``stiffness`` of ``operator`` for its ``free`` degrees of freedom, the fixed nodes held.
     With many ``loads`` a slender rail has the factor ``chain``, else it is None and the factor is
-    sparse. Raises MeshError if nothing holds it."""
+    sparse. Raises MeshError if nothing holds it, and MemoryError."""
 
     def __init__(self, operator: assembly.Operator, loads: int = 0):
         self._joints = operator.joints
@@ -49,12 +63,7 @@ class Clamped:
         # A positive definite matrix needs no pivoting; an ordering for symmetric matrices keeps its
         # factors sparse.
         with one_thread():
-            self._factor = splu(
-                self.stiffness,
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
+            self._factor = _factored(self.stiffness)
 
     def solve(self, loads: np.ndarray) -> np.ndarray:
         """Displacement (m) of the free degrees of freedom under ``loads`` (N) on them, (3k,) or

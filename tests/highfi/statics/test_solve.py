@@ -65,3 +65,13 @@ def test_the_command_has_one_thread_unless_the_user_chose(chosen, expected):
         [sys.executable, "-c", PROGRAM], env=environment | chosen, capture_output=True, text=True
     )
     assert said.stdout.splitlines()[-1] == expected, said.stderr
+
+
+def test_a_factor_without_memory_is_refused_with_the_remedy(monkeypatch):
+    def full(*_given, **_options):
+        raise MemoryError
+
+    monkeypatch.setattr(solve, "splu", full)
+    mesh = highfi.prepare(tiny(), Numerics(element_size=0.016))
+    with pytest.raises(MemoryError, match=r"degrees of freedom; larger elements .*--element-size"):
+        solve.Clamped(assembly.of_material(mesh, tiny().rail.material))
