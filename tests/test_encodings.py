@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-SPELLED = {"±": "+-", "²": "2", "µ": "u", "–": "-", "─": "-", "│": "|"} | dict.fromkeys("╭╮╯╰", "+")
+SPELLED = {"±": "+-", "²": "2", "µ": "u", "–": "-", "─": "-", "│": "|"}
+SPELLED |= dict.fromkeys("╭╮╯╰", "+") | dict.fromkeys("“”", '"')
 KEPT = ROOT / "tests/studies/kept/texts"
 # The program with another command line: it prints the texts of every study on both streams, the second one
 # beside progress bars.

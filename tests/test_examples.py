@@ -3,6 +3,7 @@ runs. The names are those of the page of reference."""
 
 import doctest
 import inspect
+import pkgutil
 import re
 from pathlib import Path
 
@@ -10,7 +11,6 @@ import numpy as np
 import pytest
 
 import tipoff
-from tipoff.comparison.metrics import Difference
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "reference" / "python.md"
 FLAGS = doctest.ELLIPSIS | doctest.IGNORE_EXCEPTION_DETAIL
@@ -23,7 +23,7 @@ def _listed() -> dict[str, object]:
     for name, options in re.findall(r"auto\w+:: tipoff\.([\w.]+)\n((?:   :.*\n)*)", text):
         if "Numerics" in name:
             continue
-        owner = Difference if name.endswith("Difference") else getattr(tipoff, name)
+        owner = pkgutil.resolve_name(f"tipoff.{name}")
         found[name] = owner
         members = re.search(r":members: (.*)", options)
         for member in members[1].split(", ") if members else ():

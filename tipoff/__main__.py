@@ -15,6 +15,7 @@ import unicodedata
 _RARE = 20_000, 50, 50
 # Plain spellings of the characters that this program prints, for encodings that lack them.
 _PLAIN = {"µ": "u", "±": "+-", "×": "x", "·": "*", "√": "sqrt ", "✓": "yes", "✗": "no", "°": " deg"}
+_PLAIN |= dict.fromkeys("“”", '"')
 
 
 def main() -> None:

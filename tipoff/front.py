@@ -86,6 +86,10 @@ def scene_from_rocketpy(flight: Any) -> Scene:
 
     Raises:
         SceneError: every value that the flight lacks.
+
+    Example:
+        >>> scene = tipoff.scene_from_rocketpy(flight)  # doctest: +SKIP
+        >>> tipoff.run(scene).export("rocketpy", "exit.json")  # doctest: +SKIP
     """
     from tipoff.scenes import from_rocketpy
 

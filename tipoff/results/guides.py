@@ -22,7 +22,13 @@ Vector = tuple[float, float, float]
 @dataclass(frozen=True, kw_only=True)
 class Guide:
     """A guide in a run. What a run does not have is None: a guide that stays on the rail, or that has no
-    load."""
+    load.
+
+    Example:
+        >>> run = tipoff.run(tipoff.load("tiny"), "springs")
+        >>> run.guides[0].name
+        'pad 1'
+    """
 
     #: "button 1" or "pad 3", counted as in the scene, from 1.
     name: str

@@ -186,7 +186,7 @@ def test_the_probability_above_limits(tmp_path):
         shown = found["quantiles"][f"rate_{axis}_deg_s"][2]
         assert shown["share"] == 0.95
         assert shown["value"] == pytest.approx(np.quantile(abs(rates[:, place]), 0.95))
-        assert f"settled rate about {axis}, size" in first.stdout
+        assert f"about {axis}, size" in first.stdout
     assert {"rates.png", "rates.svg"} <= set(os.listdir(found["store"]))
     assert "any direction" in first.stdout  # the sizes of the errors stand beside them
     half = 0.4 / 3.0 * norm.ppf(0.5 + 0.5 * 0.95 * (2.0 * norm.cdf(3.0) - 1.0))
