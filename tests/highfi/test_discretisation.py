@@ -82,6 +82,29 @@ def test_long_elements_have_an_uncertainty_too(monkeypatch, stretch):
     assert alone.compliance is not None or "times as long as thick" in alone.why
 
 
+def test_an_iteration_that_hardly_advances_gives_way_to_a_factor(monkeypatch):
+    """On elements 30 times as long, with a factor that takes as long as some 400 iterations."""
+    mesh, counted, plain = sections.rail("tee", 8e-3), [], Clamped.solve
+    mesh = replace(mesh, points=mesh.points * (30.0, 1.0, 1.0))
+    reach = 0.0, 30.0 * sections.LENGTH
+    each = 3e-7 * 8 * len(mesh.cells) * (TRAVEL.size + 3)  # s, of an iteration, as measured
+
+    def solve(self, loads):
+        counted.append(len(loads))
+        return plain(self, loads)
+
+    def known(factor):
+        monkeypatch.setattr(discretisation.chain, "seconds", lambda *_: factor)
+        monkeypatch.setattr(Clamped, "solve", solve)
+        counted.clear()
+        rails = distinct(mesh, sections.ALUMINIUM)
+        return discretisation.of_rails(rails, sections.pad(), reach, 30.0 * TRAVEL)
+
+    assert known(400 * each).compliance is not None and len(counted) < 40
+    # Control: without a factor the iteration goes on to its end
+    assert known(1e9).compliance is None and len(counted) > 400
+
+
 def test_the_uncertainty_covers_the_error_of_walls_one_element_thick():
     """Control: the change from elements twice as large, in walls as thick, does not cover it."""
     section, size = "tee by its web", 4e-3

@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import tipoff
 from tests.lowfi.support import PAPER_PAD, corners, scene
 from tipoff import lowfi
 from tipoff.results import guides
 from tipoff.results.trajectory import Trajectory
+from tipoff.studies.cli import app
 
 MASS, FORCE, END = 20.0, 4000.0, 0.2
 RAIL = {
@@ -56,3 +58,14 @@ def test_a_payload_that_stays_leaves_with_nothing():
         guide.leaves_s is None
         for guide in guides.of(tipoff.parse(run.scene, bare_numbers_are_si=True), run)
     )
+
+
+def test_a_sensitive_run_prints_no_single_rates_of_its_buttons(tmp_path):
+    """Its answer is a range. Control: with --explain they are there."""
+    asked = ["run", "--scene", "rocket_rail", "--model", "springs", "--out", str(tmp_path)]
+    for more, count in (([], 0), (["--explain"], 2)):
+        found = CliRunner().invoke(app, [*asked, *more])
+        assert found.exit_code == 0 and "the range is that of" in found.stdout
+        lines = [line for line in found.stdout.splitlines() if line.startswith("  button ")]
+        assert len(lines) == 2 and all(" m/s" in line for line in lines)
+        assert sum("deg/s" in line for line in lines) == count

@@ -170,23 +170,26 @@ def _rates(row: Single, rate: Sequence[float], where: str) -> list[str]:
 
 
 def _guides(row: Single, every: bool) -> list[str]:
-    """A line for each button; for each pad only with ``every``."""
+    """A line for each button; for each pad only with ``every``, and so the rates of a sensitive run, whose
+    answer is a range."""
+    is_one_of_many = row.error is not None and row.error.range is not None
     return [
-        f"  {guide.name:<14}{'; '.join(_of_guide(guide))}"
+        f"  {guide.name:<14}{'; '.join(_of_guide(guide, every or not is_one_of_many))}"
         for guide in row.guides
         if guide.name.startswith("button") or every
     ]
 
 
-def _of_guide(guide: Guide) -> list[str]:
-    """When a guide leaves the rail, and its largest force."""
+def _of_guide(guide: Guide, rates: bool) -> list[str]:
+    """When a guide leaves the rail, if asked with the ``rates`` then, and its largest force."""
     words = [f"x = {1e3 * guide.place_m[0]:.4g} mm"]
     if guide.leaves_s is None or guide.speed_m_s is None or guide.rate_rad_s is None:
         words.append("does not leave the rail")
     else:
-        rates = ", ".join(uncertain(math.degrees(rate)) for rate in guide.rate_rad_s)
+        then = ", ".join(uncertain(math.degrees(rate)) for rate in guide.rate_rad_s)
         words.append(
-            f"leaves at {duration(guide.leaves_s, 4)}, {uncertain(guide.speed_m_s)} m/s, {rates} deg/s"
+            f"leaves at {duration(guide.leaves_s, 4)}, {uncertain(guide.speed_m_s)} m/s"
+            + (f", {then} deg/s" if rates else "")
         )
     if guide.largest_force_n is None or guide.largest_force_time_s is None:
         return [*words, "no force"]
