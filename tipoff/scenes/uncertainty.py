@@ -64,9 +64,8 @@ class Uncertainty(NamedTuple):
     seed: int
     sampling: str
     vary: dict[str, Distribution]  # by dotted key, or by that of a component of an offset
-    factors: Mapping[str, float] = MappingProxyType(
-        {}
-    )  # nominal values (SI) by the keys whose factor is drawn
+    #: nominal values (SI) by the keys whose factor is drawn
+    factors: Mapping[str, float] = MappingProxyType({})
 
     def resolved(self) -> dict:
         """The inputs of the sampling in SI, as written into result files."""
