@@ -11,7 +11,8 @@ from tests.studies.agreement.made import ROW
 from tipoff.files import write_json
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.verdicts import JudgedCondition
-from validation.documents import readme
+from tipoff.workspace import machine
+from validation.documents import readme, state
 
 TEXT = (pages.ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -86,3 +87,21 @@ def test_figures_are_those_of_the_page_of_results():
     assert speed in results
     equal = re.findall(r"\*\*Speed-up\*\* (.*)\.$", TEXT, re.MULTILINE)
     assert all(said in results for said in equal)
+
+
+@pytest.mark.parametrize("name, page", [("results", "results"), ("tails", "tails")])
+def test_numbers_are_of_the_state_of_their_page(name, page):
+    """README and the page are written from one file; numbers of another state show here."""
+    (made,) = re.findall(f"<!-- {name}, state (.*): python -m", TEXT)
+    assert made in (pages.ROOT / f"docs/{page}.md").read_text(encoding="utf-8").split("\n|")[0]
+
+
+def test_a_page_names_each_state_of_its_results():
+    made = machine.state()
+    other = made | {"commit": "0123456789ab", "version": "2.0"}
+    one = state.sentence({"highfi": {"state": made}, "lowfi": {"state": made}, "blind": None})
+    assert one == f"State: {machine.stated(made)}." and made["date"] in one
+    two = state.sentence({"highfi": {"state": made}, "lowfi": {"state": other}, "cost": {}})
+    assert "`lowfi.json`: tipoff 2.0, commit 0123456789ab, " in two
+    assert "`cost.json`: not recorded" in two and machine.stated(made) in two
+    assert machine.stated(other) in state.mark("tails", {"state": other})

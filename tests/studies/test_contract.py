@@ -24,7 +24,18 @@ COMMANDS = [
 ]
 TEXTS = kept.texts()
 # what every result file has beside the result
-ENVELOPE = {"stage", "scene", "quantities", "made", "key", "sha256", "files", "implausible", "took"}
+ENVELOPE = {
+    "stage",
+    "scene",
+    "quantities",
+    "made",
+    "key",
+    "sha256",
+    "files",
+    "implausible",
+    "state",
+    "took",
+}
 
 
 def ruled(kind, path=()):

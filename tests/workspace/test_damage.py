@@ -17,6 +17,7 @@ from tipoff.results.trajectory import Trajectory
 from tipoff.studies.cli import app
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.view import stage as view
+from tipoff.workspace import machine
 from tipoff.workspace import store as store_module
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study, read
@@ -92,6 +93,7 @@ def test_a_result_tells_what_it_took(engine, study):
     """Wall time and number of runs. Control: those of stored runs are not counted."""
     made = runs.run(study, "highfi")
     assert made.took["runs"] == len(engine) == 2 and made.took["wall_s"] > 0.0
+    assert made.state == machine.state() and made.state["version"]
     assert runs.run(study, "highfi").took == made.took
     study.path("highfi.json").unlink()
     assert runs.run(study, "highfi").took["runs"] == 0

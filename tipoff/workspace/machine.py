@@ -1,8 +1,15 @@
-"""Description of this machine, for results that contain times."""
+"""Description of this machine, for results that contain times, and the state of tipoff that made a result."""
 
+import datetime
+import functools
 import os
 import platform
+import subprocess
 from pathlib import Path
+
+from tipoff import sources
+
+_ROOT = Path(__file__).resolve().parents[2]
 
 
 def describe() -> dict:
@@ -14,6 +21,43 @@ def describe() -> dict:
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
     }
+
+
+def state() -> dict:
+    """What makes a result now: ``version`` and ``commit`` of tipoff, ``date`` (UTC), ``processor`` and
+    ``cores``. The commit ends with ``+`` if files of the clone differ from it, and is None outside a
+    clone."""
+    here = describe()
+    return {
+        "version": sources.version("tipoff"),
+        "commit": _commit(),
+        "date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d"),
+        "processor": here["processor"],
+        "cores": here["cores"],
+    }
+
+
+def stated(made: dict | None) -> str:
+    """A ``state`` in words; that it is not recorded if there is none."""
+    if not made:
+        return "not recorded"
+    commit = f"commit {made['commit']}, " if made["commit"] else ""
+    return f"tipoff {made['version']}, {commit}{made['date']}, {made['processor']}, {made['cores']} cores"
+
+
+@functools.cache
+def _commit() -> str | None:
+    """Asked once: an edit during a run belongs to the next process."""
+    if not (_ROOT / ".git").exists():  # installed, or a copy without its history
+        return None
+    try:
+        head, changed = (
+            subprocess.run(["git", "-C", _ROOT, *asked], capture_output=True, text=True, check=True)
+            for asked in (("rev-parse", "--short=12", "HEAD"), ("status", "--porcelain", "-uno"))
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return head.stdout.strip() + ("+" if changed.stdout else "")
 
 
 def cores() -> int:

@@ -60,6 +60,11 @@ class Made(NamedTuple, Generic[_Result]):
         """``wall_s`` and number of ``runs`` when the result was made; empty where not known."""
         return self.document.get("took", {})
 
+    @property
+    def state(self) -> dict | None:
+        """``machine.state`` when the result was made; None where not known."""
+        return self.document.get("state")
+
 
 def _nothing(study: Study, options: Any) -> None:
     return None

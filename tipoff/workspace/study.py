@@ -2,10 +2,10 @@
 nothing changed.
 
 A stage writes ``out/<scene>/<stage>.json`` with the ``key`` of everything on which it depends, the
-digests of the ``files`` that it wrote, the warnings of the scene as ``implausible``, and what it
-``took``: wall time (s) and runs. It is made again if the key differs, if one of its files is missing
-or changed, or if the result does not match its digest. Readers verify all files, so a stage never
-uses a damaged one.
+digests of the ``files`` that it wrote, the warnings of the scene as ``implausible``, the ``state`` of
+tipoff that made it, and what it ``took``: wall time (s) and runs. It is made again if the key differs,
+if one of its files is missing or changed, or if the result does not match its digest. Readers verify
+all files, so a stage never uses a damaged one.
 """
 
 import hashlib
@@ -25,7 +25,7 @@ from tipoff.scenes import implausible
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.scene import Scene
-from tipoff.workspace import words
+from tipoff.workspace import machine, words
 from tipoff.workspace.errors import FAILED as FAILED
 from tipoff.workspace.errors import NotAsked as NotAsked
 from tipoff.workspace.errors import StudyError as StudyError
@@ -241,6 +241,7 @@ class Study:
                 "key": key,
                 "quantities": words.QUANTITIES,
                 "implausible": implausible.of_all_conditions(self.scene),
+                "state": machine.state(),
                 "took": took,
                 **result,
                 "files": {self.relative(file): _digest(file) for file in files},

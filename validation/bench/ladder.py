@@ -94,6 +94,7 @@ def run(out: Path, scene: str, conditions: tuple[str, ...], element_size: float)
         "element_size": element_size,
         "rows": [asdict(row) for row in rows],
         "hardware": machine.describe(),
+        "state": machine.state(),
     }
     write_json(Path(out) / "bench" / "ladder.json", result)
     return result

@@ -58,7 +58,12 @@ def run(out: Path, repeats: int, sizes: tuple[float, ...] = SIZES) -> dict:
     for size in sizes:
         rows.append(_measured(size, repeats))
         say(f"  parts of a step at {1e3 * size:g} mm: done")
-    found = {"rows": rows, "repeats": repeats, "hardware": machine.describe()}
+    found = {
+        "rows": rows,
+        "repeats": repeats,
+        "hardware": machine.describe(),
+        "state": machine.state(),
+    }
     write_json(Path(out) / "bench" / "parts.json", found)
     return found
 

@@ -144,6 +144,7 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
         "dt_element_s": stepping.dt_element_s,
         "projected_40_ms_s": 0.04 / stepping.dt_s * 1e-9 * median["pressed"] * elements,
         "hardware": machine.describe(),
+        "state": machine.state(),
     }
 
 

@@ -61,6 +61,7 @@ def run(out: Path, cases: int = 2000, few: int = 20, repeats: int = 5) -> dict:
         "varied_cases": few,
         "repeats": repeats,
         "hardware": machine.describe(),
+        "state": machine.state(),
     }
     write_json(Path(out) / "bench" / "lowfi.json", found)
     for line in lines(found):

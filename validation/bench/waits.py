@@ -71,7 +71,11 @@ def run(
     if cold:
         with TemporaryDirectory() as folder:
             rows += [_once(name, call) for name, call in _cold(Path(folder)).items()]
-    found = {"rows": [asdict(row) for row in rows], "hardware": machine.describe()}
+    found = {
+        "rows": [asdict(row) for row in rows],
+        "hardware": machine.describe(),
+        "state": machine.state(),
+    }
     write_json(Path(out) / "bench" / "waits.json", found)
     return found
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tipoff.files import write_text
 from tipoff.studies.render.document import Figure, markdown
+from validation.documents import state
 from validation.peers import page, stage
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -40,8 +41,12 @@ def text() -> str:
         else part
         for part in page.parts(stage.stored(stage.KEPT))
     ]
+    results = {
+        peer["peer"].lower(): peer for peer in stage.stored(stage.KEPT) if "missing" not in peer
+    }
     # Sections of this page, which are subsections in a report.
-    return f"{_TITLE}\n\n{markdown(parts)}\n".replace("\n### ", "\n## ")
+    sections = f"{markdown(parts)}\n".replace("\n### ", "\n## ")
+    return f"{_TITLE}\n\n{state.sentence(results)}\n\n{sections}"
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ files of ``make full-report``.
     python -m validation.documents.readme [FOLDER]        default out/reference
 """
 
+import re
 import shutil
 import sys
 from collections import Counter
@@ -31,10 +32,9 @@ from tipoff.studies.render.table import Column, Table, number, percent
 from tipoff.studies.render.uncertain import STEPS
 from tipoff.workspace.study import read
 from tipoff.workspace.timing import Speedup
-from validation.documents import further
+from validation.documents import further, state
 from validation.montecarlo import tails as checked
 from validation.montecarlo import tails_page
-from validation.montecarlo.results import Tails
 
 _ROOT = Path(__file__).resolve().parents[2]
 _TITLE = """# Results on the reference scene
@@ -52,27 +52,40 @@ Scene {scene}. Written by `python -m validation.documents.readme` from the file 
 `python -m validation montecarlo --cases {cases} --reference {draws} --finer {fine}`. All runs of the surrogate have the
 [number of rail modes](rail_modes.md#one-number-in-a-study) that pilot cases of the population chose. The
 table by settings has runs with others too."""
-_BEGIN, _END = "<!-- {name}: python -m validation.documents.readme -->", "<!-- end of {name} -->"
+# The result files on the page of results, beside those of ``make bench``.
+_ON_PAGE = (
+    "highfi",
+    "lowfi",
+    "agreement",
+    "blind",
+    "convergence",
+    "ripple",
+    "cost_study",
+    "scaling",
+)
 
 
 def main(folder: Path) -> None:
     """Replace the figures in README.md, the page of results, and the pictures beside it."""
-    _into_readme("results", headline(folder))
-    page = f"{_TITLE}\n\n{section(folder)}\n\n{further.details(folder)}\n"
+    _into_readme("results", read_json(folder / "agreement.json"), headline(folder))
+    made_by = state.sentence({name: read(folder / f"{name}.json") for name in _ON_PAGE})
+    page = f"{_TITLE}\n\n{made_by}\n\n{section(folder)}\n\n{further.details(folder)}\n"
     write_text(_ROOT / "docs" / "results.md", page)
     if (cost := read(folder / "cost_study.json")) is not None:
         chart.to_files(cost_page.picture(cost_study.STAGE.read(cost)), folder / "figures")
     for name in ("figure6.png", "cost.png"):
         shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
     if (found := read(folder / "tails.json")) is not None:
-        tails(checked.STAGE.read(found), folder)
+        tails(found, folder)
 
 
-def tails(found: Tails, folder: Path) -> None:
+def tails(document: dict, folder: Path) -> None:
     """Write the page of random errors checked by the reference, its picture, and its lines in
     README."""
+    found = checked.STAGE.read(document)
     _into_readme(
         "tails",
+        document,
         "\n  - ".join(
             [
                 "- **Tails**, from [random ejections](docs/tails.md):",
@@ -82,17 +95,19 @@ def tails(found: Tails, folder: Path) -> None:
     )
     text = markdown(tails_page.document(found))
     head = _TAILS.format(scene=f"`{folder.name}`", **vars(found))
-    write_text(_ROOT / "docs" / "tails.md", f"{head}\n\n{text}\n")
+    made_by = state.sentence({"tails": document})
+    write_text(_ROOT / "docs" / "tails.md", f"{head}\n\n{made_by}\n\n{text}\n")
     for drawn in tails_page.figures(found):
         (picture, *_) = chart.to_files(drawn.chart, folder / "figures")
         shutil.copyfile(picture, _ROOT / "docs" / picture.name)
 
 
-def _into_readme(name: str, text: str) -> None:
-    """Replace the lines of README between the marks of ``name``."""
-    path = _ROOT / "README.md"
-    begin, end = (mark.format(name=name) for mark in (_BEGIN, _END))
-    before, rest = path.read_text(encoding="utf-8").split(begin)
+def _into_readme(name: str, document: dict, text: str) -> None:
+    """Replace the lines of README between the marks of ``name`` by a ``text`` on a result file's
+    ``document``."""
+    path, end = _ROOT / "README.md", f"<!-- end of {name} -->"
+    before, rest = re.split(f"<!-- {name}[,:].*-->", path.read_text(encoding="utf-8"), maxsplit=1)
+    begin = state.mark(name, document)
     write_text(path, f"{before}{begin}\n{text}\n{end}{rest.split(end)[1]}")
 
 

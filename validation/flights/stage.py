@@ -4,6 +4,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from tipoff.files import write_json
+from tipoff.workspace import machine
 from validation.flights import compare, page, record
 from validation.flights.compare import Flight
 from validation.flights.launchers import LAUNCHERS
@@ -23,6 +24,7 @@ def written(found: list[Flight], folder: Path) -> dict:
     return write_json(
         folder / "flights.json",
         {
+            "state": machine.state(),
             "flights": [
                 {
                     "flight": each.own.launcher.name,
@@ -31,6 +33,6 @@ def written(found: list[Flight], folder: Path) -> dict:
                     "rows": [asdict(row) for row in each.rows],
                 }
                 for each in found
-            ]
+            ],
         },
     )

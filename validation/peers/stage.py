@@ -94,6 +94,7 @@ def _solved(peer: Peer) -> dict:
         "what": peer.what,
         "version": version,
         "hardware": machine.describe(),
+        "state": machine.state(),
         "cases": [_case(case) for case in peer.cases()],
     }
 

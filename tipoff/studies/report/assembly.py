@@ -138,13 +138,20 @@ def _colophon(page: Page) -> list[Part]:
     ]
     made = {name: found for name, found in page.results.items() if isinstance(found, Made)}
     rows = [
-        (f"{name}.json", found.took.get("wall_s"), found.took.get("runs"), f"`{found.key}`")
+        (
+            f"{name}.json",
+            found.took.get("wall_s"),
+            found.took.get("runs"),
+            machine.stated(found.state),
+            f"`{found.key}`",
+        )
         for name, found in made.items()
     ]
     heads = (
         "result file",
         Column("made in", "s", ",.0f"),
         "runs made",
+        "made by",
         "key: hash of scene, code and numerics",
     )
     return [Table(("", ""), facts), Table(heads, rows, notes=(_TIMES,))]
