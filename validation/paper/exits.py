@@ -8,8 +8,8 @@ import numpy as np
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.batch import Family
 from tipoff.lowfi.ensemble.columns import Columns
-from tipoff.studies import published
 from tipoff.studies.populations import answers
+from validation import published
 from validation.paper import misfit
 
 CALIBRATION = (

@@ -20,7 +20,7 @@ from tipoff.faults import SceneError
 from tipoff.lowfi.ensemble.batch import Family
 from tipoff.lowfi.numerics import Numerics
 from tipoff.scenes.scene import Scene
-from tipoff.studies import published
+from validation import published
 from validation.paper import inputs
 
 NEGLIGIBLE = 0.3  # deg/s

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from tipoff.studies import published
 from tipoff.studies.populations import answers
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Cells, Column, Table
 from tipoff.workspace.words import counted
+from validation import published
 from validation.paper import summary
 
 _AXES = tuple(zip("xyz", (NAVY, VERMILION, AMBER), ("o", "s", "^")))
@@ -25,6 +25,13 @@ _PAIRS = (
     ("Nine rates, 54 deviations", _NINE, _DEVIATIONS),
     ("54 deviations, conditions 1 and 5", _DEVIATIONS, _QUIET),
 )
+_SWEPT = {
+    "misalignment": "misalignment (deg)",
+    "thrust_eccentricity": "thrust eccentricity (mm)",
+    "mass_eccentricity": "mass eccentricity (mm)",
+}
+_ABOUT = ("here: about x", "about y", "about z", "total")
+_NOT_SWEPT = ("",) * len(_ABOUT)
 _TRADED = (
     "Ends of the searches by three measures, two in each panel: largest error of the nine "
     "printed rates, largest error of their 54 deviations, largest rate on conditions 1 and 5. "
@@ -62,6 +69,7 @@ def draw(found: dict) -> list[Part]:
         table_of_inputs(found),
         Fold("Reasons for the bounds", [_reasons(found["inputs"])]),
         Fold("All searches", [_searches(found["searches"])]),
+        table_of_plateaus(found["plateaus"]),
         *_headline(found),
         Bullets(found["slips"]),
         f"Scene {found['scene_file']}, data {found['data']}.",
@@ -302,6 +310,17 @@ def _headline(found: dict) -> list[Part]:
     )
     missing = f"Not measured here yet; `tipoff compare --scene {found['scene']}` measures it."
     return [Table(heads, rows, notes=() if ours else (missing,))]
+
+
+def table_of_plateaus(found: dict[str, dict[str, str]] | None) -> Table:
+    """The size of each error at which the rates stop growing, in the paper, and the verdicts here."""
+    printed = published.headline()
+    rows = [
+        (error, float(printed[f"plateau_starts_{name}"]), *((found or {}).get(name) or _NOT_SWEPT))
+        for name, error in _SWEPT.items()
+    ]
+    notes = () if found else ("Not swept here yet; `tipoff sweeps` does it.",)
+    return Table(("plateau of the rates from", "the paper", *_ABOUT), rows, notes=notes)
 
 
 def table_of_inputs(found: dict) -> Table:

@@ -11,8 +11,8 @@ import numpy as np
 
 from tipoff.files import write_netcdf
 from tipoff.lowfi.ensemble.columns import Columns
-from tipoff.studies import published
 from tipoff.studies.populations import answers
+from validation import published
 from validation.paper import exits, inputs, misfit, solutions, summary
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import numpy as np
 from tipoff import toml
 from tipoff.scenes import overrides, provenance
 from tipoff.scenes.scene import Scene
-from tipoff.studies import published
+from validation import published
 from validation.paper import inputs
 
 _UNITS = {

@@ -18,13 +18,15 @@ from tipoff.faults import Fault, SceneError
 from tipoff.files import content_hash, write_text
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene, load
-from tipoff.studies import published
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.render.document import with_figures
+from tipoff.studies.sweeps import stage as sweeps
+from tipoff.studies.sweeps.knee import Growth
 from tipoff.workspace.progress import Board, team
 from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
+from validation import published
 from validation.paper import (
     catalogued,
     exits,
@@ -93,13 +95,13 @@ def run(study: Study, options: Options = Options()) -> Made[dict]:
         result, pictures = with_figures(result, drawn.figures, study.path("figures"))
         return result, [path, data, *pictures]
 
-    return _with_present(study, STAGE.run(study, options, make))
+    return with_present(study, STAGE.run(study, options, make))
 
 
 def stored(study: Study) -> Made[dict] | None:
     """The result, if it was made from the present scene, code and settings."""
     found = STAGE.stored(study)
-    return found and _with_present(study, found)
+    return found and with_present(study, found)
 
 
 def require(scene: Scene) -> None:
@@ -244,16 +246,22 @@ def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Sea
 STAGE: Stage[dict] = Stage(NAME, __name__, options=Options)
 
 
-def _with_present(study: Study, made: Made[dict]) -> Made[dict]:
+def with_present(study: Study, made: Made[dict]) -> Made[dict]:
     """The result with values that are not stored in it: the cost of both fidelities, if the present
-    agreement study has it, and whether the best set is the catalogue's scene."""
+    agreement study has it, the plateaus of the present sweeps, and whether the best set is the
+    catalogue's scene."""
     found, kept = made.result, load(CATALOGUED)
     best = misfit.Launcher(_base(study.scene)).scene(
         inputs.shares(found["searches"][found["best"]]["values"])
     )
-    ours = compare.stored(study)
+    ours, swept = compare.stored(study), sweeps.STAGE.stored(study)
     present = {
         "ours": ours and asdict(ours.speedup),
+        "plateaus": swept
+        and {
+            factor.name: [_plateau(bent) for bent in factor.growth.values()]
+            for factor in swept.result.launches[0].factors
+        },
         "catalogue": {
             "name": kept.name,
             "same": not _differing(kept.physics(), best.physics()),
@@ -261,3 +269,12 @@ def _with_present(study: Study, made: Made[dict]) -> Made[dict]:
         },
     }
     return Made(found | present, made.document | present)
+
+
+def _plateau(found: Growth | None) -> str | None:
+    """Where a rate stops growing, or the verdict."""
+    if found is None:
+        return None
+    if found.verdict != "plateau":
+        return found.verdict
+    return f"{found.knee:.2f} ({found.low:.2f} to {found.high:.2f})"

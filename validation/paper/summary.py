@@ -3,7 +3,7 @@ of admissible points."""
 
 import numpy as np
 
-from tipoff.studies import published
+from validation import published
 from validation.paper import inputs, misfit, solutions
 
 _UNITS = {"k": "N/mm^e", "c": "N s/mm", "d": "mm"}

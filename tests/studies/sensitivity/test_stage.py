@@ -79,9 +79,8 @@ def test_the_command(tiny, tmp_path, monkeypatch):
     kept = read(tmp_path / "out" / "tiny" / "sensitivity.json")
     found = sensitivity.STAGE.read(kept)
     (table,) = found.tables  # nothing was calibrated, so no second one
-    assert [row.condition for row in table.rows[::8]] == ["phi15", "phi35", "phi60"] and len(
-        table.rows
-    ) == 24
+    assert [row.condition for row in table.rows[::8]] == ["phi15", "phi60"]
+    assert len(table.rows) == 16
     assert (
         max(table.largest.absolute_deg_s) > 0.0
         and max(table.largest_clearance.absolute_deg_s) > 0.0

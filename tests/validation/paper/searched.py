@@ -10,10 +10,10 @@ import pytest
 from tests.studies.shown import html
 from tests.studies.synthetic import undrawn
 from tipoff import scenes
-from tipoff.studies import published
 from tipoff.studies.render import document
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
+from validation import published
 from validation.paper import inputs, solutions
 from validation.paper import page as section
 from validation.paper import stage as paper

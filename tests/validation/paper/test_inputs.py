@@ -9,7 +9,7 @@ import pytest
 from tests.validation.paper.searched import BASE, COUNT
 from tipoff import lowfi, scenes
 from tipoff.lowfi.numerics import Numerics
-from tipoff.studies import published
+from validation import published
 from validation.paper import inputs, misfit, scene_file, solutions
 
 

@@ -15,10 +15,10 @@ from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.batch import Case
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.outcome import Outcome
-from tipoff.studies import published
 from tipoff.studies.populations import answers
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
+from validation import published
 from validation.paper import exits, inputs, misfit, results, solutions, summary
 from validation.paper import page as section
 from validation.paper import stage as paper

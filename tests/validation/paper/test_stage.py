@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.studies import kept
 from tests.studies.agreement.made import SPEEDUP, document, table
 from tests.studies.synthetic import undrawn
 from tests.validation.paper.searched import BASE, COUNT, SMALL, copied, page, shown, stub, studied
@@ -16,11 +17,13 @@ from tipoff import lowfi, scenes
 from tipoff.faults import SceneError
 from tipoff.files import write_json
 from tipoff.lowfi.numerics import Numerics
-from tipoff.studies import published
 from tipoff.studies.agreement import stage as compare
+from tipoff.studies.sweeps import stage as sweeps
 from tipoff.workspace.progress import Interrupted
 from tipoff.workspace.settings import Settings
+from tipoff.workspace.stage import Made
 from tipoff.workspace.study import Study, StudyError
+from validation import published
 from validation.paper import catalogued, misfit, solutions
 from validation.paper import page as section
 from validation.paper import stage as paper
@@ -160,6 +163,25 @@ def test_printed_deviations_stand_beside_ours(quick):
             "".join(f'<td class="number">{100.0 * share:.2f} %</td>' for share in shares) in drawn
         )
     assert not np.allclose(ours, printed.largest_relative(), rtol=0.01)
+
+
+def test_the_plateaus_of_the_sweeps_stand_beside_the_printed_ones(quick, monkeypatch):
+    """Control: without sweeps the printed sizes stand alone."""
+    assert quick[1]["plateaus"] is None and "Not swept here yet" in page(quick[1])
+    swept = kept.result(sweeps.STAGE)
+    (misalignment, *others), (launch, *_) = swept.launches[0].factors, swept.launches
+    growth = replace(
+        misalignment.growth["rate_deg_s"], verdict="plateau", knee=0.5, low=0.4, high=0.6
+    )
+    misalignment = replace(misalignment, growth=misalignment.growth | {"rate_deg_s": growth})
+    swept = replace(swept, launches=(replace(launch, factors=(misalignment, *others)),))
+    monkeypatch.setattr(type(sweeps.STAGE), "stored", lambda *_: Made(swept, {}))
+    monkeypatch.setattr(compare, "stored", lambda study: None)
+    found = paper.with_present(quick[0], Made(quick[1], quick[1])).result
+    row = next(each for each in section.table_of_plateaus(found["plateaus"]).rows)
+    assert row[:2] == ("misalignment (deg)", 0.4)
+    assert row[2:] == (*["none of the laws"] * 3, "0.50 (0.40 to 0.60)")
+    assert "Not swept" not in page(found)
 
 
 def test_ranges_say_how_few_searches_they_come_from(quick, tmp_path):

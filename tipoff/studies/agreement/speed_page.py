@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tipoff.studies import published
 from tipoff.studies.agreement import stage
 from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
 from tipoff.studies.render.document import Caption, Part
@@ -41,9 +40,8 @@ def _equal(found: EqualAccuracy | None) -> str:
     """The speed-up at equal accuracy; the mesh of the tables above is fixed."""
     if found is None:
         return "`tipoff convergence` measures the speed-up at equal accuracy."
-    printed = float(published.headline()["speedup"])
     sentence = found.sentence()
-    return f"{sentence[0].upper()}{sentence[1:]}. The paper has {printed:,.0f} for its two models."
+    return f"{sentence[0].upper()}{sentence[1:]}."
 
 
 def _speedup(model: str, found: Speedup) -> Table:

@@ -1,5 +1,5 @@
-"""Compute the sensitivity to uncertain inputs: contact constants as in the paper's Table 2, and
-Sobol' indices; writes sensitivity.json.
+"""Compute the sensitivity to uncertain inputs: contact constants one at a time, and Sobol' indices;
+writes sensitivity.json.
 
 A file of tolerances gives the distribution of an input (vary), or of a factor of its nominal
 value (factor):

@@ -1,5 +1,4 @@
-"""Contact constants changed one at a time, in the form of Table 2 of the paper
-(``studies.published``).
+"""Contact constants changed one at a time, by the shares of Table 2 of the paper.
 
 Deviations are absolute, w - w0, and relative, (w - w0)/w0. The relative deviation is left out if w0 is
 below a twentieth of the total rate of its condition. For comparison, the clearance changes by one
@@ -14,7 +13,6 @@ import numpy as np
 
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.scenes.scene import Scene
-from tipoff.studies import published
 
 # The changes of Table 2: 70,000 to 66,000 and 74,000; 60 to 50 and 70; 0.30 to 0.25 and 0.35.
 # Compliant contact has the interface stiffness alone.
@@ -57,13 +55,8 @@ def changes(scene: Scene, model: str) -> list[Change]:
 
 
 def conditions(scene: Scene) -> list[str]:
-    """The conditions of Table 2 if the scene has them all, else the fitted ones, else all."""
-    names = [name for name in published.CONDITIONS if name in scene.conditions]
-    return (
-        names
-        if len(names) == len(published.CONDITIONS)
-        else list(scene.agreement.fitted or scene.conditions)
-    )
+    """The fitted conditions, else all."""
+    return list(scene.agreement.fitted or scene.conditions)
 
 
 Axes = tuple[float | None, float | None, float | None]  # about x, y, z
@@ -81,8 +74,7 @@ class Deviations:
 @dataclass(frozen=True, kw_only=True)
 class PerturbedRun(Deviations):
     """A ``Change`` of a ``condition``: the changed value, rates, and ``values`` of further
-    quantities by name, with the change of each. None if a case did not settle or the paper has no
-    value."""
+    quantities by name, with the change of each. None if a case did not settle."""
 
     condition: str
     symbol: str
@@ -131,26 +123,6 @@ def rows(
                 moved={name: value - float(columns[name][0]) for name, value in values.items()},
             )
         found.append(row)
-    return found
-
-
-def of_paper() -> list[PerturbedRun]:
-    """Table 2 of the paper with the deviations that follow from its rates."""
-    names = {number: name for name, number in published.CONDITIONS.items()}
-    found = []
-    baseline: tuple[float, float, float] | None = None
-    for row in published.table_2():
-        baseline = row.rates if row.raised is None else baseline
-        assert baseline is not None  # the first row of each condition
-        found.append(
-            PerturbedRun(
-                condition=names[row.condition],
-                symbol=row.symbol,
-                raised=row.raised,
-                rate_deg_s=row.rates,
-                **vars(deviations(baseline, row.rates)),
-            )
-        )
     return found
 
 

@@ -1,8 +1,6 @@
-"""The sensitivity of the result: contact constants beside the paper's Table 2, and Sobol' indices of
-every quantity."""
+"""The sensitivity of the result: contact constants, and Sobol' indices of every quantity."""
 
 import math
-from dataclasses import replace
 from itertools import chain
 from operator import attrgetter
 from typing import Any
@@ -17,7 +15,7 @@ from tipoff.studies.render.table import Column, Table, span
 from tipoff.studies.render.uncertain import Measured, number, uncertain
 from tipoff.studies.sensitivity.contact_table import Axes, PerturbedRun
 from tipoff.studies.sensitivity.indices import Indices
-from tipoff.studies.sensitivity.results import Constants, Paper, Sensitivity, Shares, Sobol
+from tipoff.studies.sensitivity.results import Constants, Sensitivity, Shares, Sobol
 from tipoff.workspace.words import counted
 
 _Indexed = list[tuple[Shares, Indices]]
@@ -54,15 +52,10 @@ _CONVERGENCE = (
     "Total indices of the four largest inputs against the number of base points. A flat line shows "
     "that more points would change little."
 )
-_TABLE = (
-    "No percentage is given for a rate below a twentieth of the total rate. The paper's "
-    "percentages are computed from the rates of its Table 2; its text gives 0.26 % as the largest "
-    "about z, its table 0.71 %. The paper's scene is another one, so its rates differ."
-)
+_TABLE = "No percentage is given for a rate below a twentieth of the total rate."
 _LARGEST = (
-    "Largest change over all conditions when one contact constant changes, when the clearance is "
-    "1 µm larger, and in the paper's Table 2. Percentages leave out rates below a twentieth of the "
-    "total rate."
+    "Largest change over all conditions when one contact constant changes, and when the clearance "
+    "is 1 µm larger. Percentages leave out rates below a twentieth of the total rate."
 )
 _INDICES = (
     "Mean, standard deviation, sum of the first-order indices, and the three inputs with the "
@@ -77,9 +70,6 @@ _MOVED = (
     Column("change", "%", ".2g", 100.0),
 )
 _SHOWN = 3  # inputs in the table of indices
-_HEADS = ("condition", "changed", *_MOVED, replace(_MOVED[0], title="paper: rates"), *_MOVED[1:])
-
-
 _BAR_LOOKS: tuple[tuple[float, str, str, dict[str, Any]], ...] = (
     (0.2, "total", "total", {"color": NAVY}),
     (
@@ -113,12 +103,12 @@ def figures(found: Sensitivity) -> list[Figure]:
 
 def draw(found: Sensitivity) -> list[Part]:
     """The section: tables of contact constants, then indices."""
-    changes = [_beside_paper(item, found.paper) for item in found.tables]
+    changes = [_each_change(item) for item in found.tables]
     return [
         Bullets([population.model_line(found)]),
         *([Heading("One contact constant at a time")] if found.tables else []),
-        *(table_of_largest(item, found.paper) for item in found.tables),
-        *([Fold("Each change beside the paper's Table 2", changes)] if changes else []),
+        *(table_of_largest(item) for item in found.tables),
+        *([Fold("Each change", changes)] if changes else []),
         Heading("All inputs together"),
         _used(found.sobol),
         table_of_indices(found.sobol),
@@ -127,23 +117,22 @@ def draw(found: Sensitivity) -> list[Part]:
     ]
 
 
-def table_of_largest(item: Constants, paper: Paper) -> Table:
-    """The largest change of each quantity by a contact constant, by the clearance, and in the
-    paper's Table 2."""
-    sources = (item.largest, item.largest_clearance, paper.largest)
+def table_of_largest(item: Constants) -> Table:
+    """The largest change of each quantity by a contact constant, and by the clearance."""
+    sources = (item.largest, item.largest_clearance)
     nothing: Axes = (None, None, None)
     rows: list[tuple] = []
     for place, quantity in enumerate(answers.ALL):
         name = quantity.title
         if place >= len(answers.RATES):
-            rows.append((name, item.most_moved.get(quantity.name), *[""] * 5))
+            rows.append((name, item.most_moved.get(quantity.name), *[""] * 3))
             continue
         changes = [
             (_change((found.absolute_deg_s or nothing)[place]), (found.relative or nothing)[place])
             for found in sources
         ]
         rows.append((name, *chain.from_iterable(changes)))
-    heads = ("contact constants", "clearance", "the paper")
+    heads = ("contact constants", "clearance")
     columns = [(Column(head), Column("%", "", ".2g", 100.0)) for head in heads]
     title = f"Largest change of each quantity, {item.title}"
     return Table(["quantity", *chain.from_iterable(columns)], rows, notes=(_LARGEST,), title=title)
@@ -202,18 +191,9 @@ def table_of_indices(sobol: Sobol) -> Table:
     )
 
 
-def _beside_paper(item: Constants, paper: Paper) -> Table:
-    """One row for each change, with the rates of the paper where its Table 2 has the same."""
-    theirs = {(row.condition, row.symbol, row.raised): _moved(row) for row in paper.rows}
-    rows = [
-        (
-            row.condition,
-            _changed(row),
-            *_moved(row),
-            *theirs.get((row.condition, row.symbol, row.raised), ("", "", "")),
-        )
-        for row in item.rows
-    ]
+def _each_change(item: Constants) -> Table:
+    """One row for each change."""
+    rows = [(row.condition, _changed(row), *_moved(row)) for row in item.rows]
     constants = ", ".join(f"{key} {value:.4g}" for key, value in item.constants_si.items())
     symbols = dict.fromkeys(row.symbol for row in item.rows if row.raised is not None)
     idle = [
@@ -223,7 +203,8 @@ def _beside_paper(item: Constants, paper: Paper) -> Table:
     ]
     without = f" No rate changes with {' or '.join(idle)}." if idle else ""
     title = f"{item.title.capitalize()}: {item.law}, SI: {constants}.{without}"
-    return Table(_HEADS, rows, notes=(_TABLE,), title=title, dense=True)
+    heads = ("condition", "changed", *_MOVED)
+    return Table(heads, rows, notes=(_TABLE,), title=title, dense=True)
 
 
 def _changed(row: PerturbedRun) -> str:

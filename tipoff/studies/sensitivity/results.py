@@ -12,21 +12,15 @@ from tipoff.studies.sensitivity.options import Options
 
 
 @dataclass(frozen=True, kw_only=True)
-class Paper:
-    """A table of changed constants, and its largest deviations."""
-
-    rows: tuple[PerturbedRun, ...]
-    largest: Deviations
-
-
-@dataclass(frozen=True, kw_only=True)
-class Constants(Paper):
-    """The table of the contact ``law`` with its constants (SI); the largest deviations by the clearance;
-    the largest change of each of ``answers.ALL`` by a constant."""
+class Constants:
+    """The table of the contact ``law`` with its constants (SI); the largest deviations by a constant and
+    by the clearance; the largest change of each of ``answers.ALL`` by a constant."""
 
     title: str
     law: str
     constants_si: dict[str, Any]
+    rows: tuple[PerturbedRun, ...]
+    largest: Deviations
     largest_clearance: Deviations
     most_moved: dict[str, float]
     store: str
@@ -93,7 +87,5 @@ class Sensitivity(Answering):
     calibration changed them; none without contact."""
 
     asked: Options
-    citation: str
     tables: tuple[Constants, ...]
-    paper: Paper
     sobol: Sobol

@@ -10,7 +10,6 @@ from tipoff.faults import together
 from tipoff.lowfi.ensemble.rows import Listed
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
-from tipoff.studies import published
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
@@ -19,7 +18,6 @@ from tipoff.studies.sensitivity.contact_table import PerturbedRun
 from tipoff.studies.sensitivity.options import HALVINGS, Options
 from tipoff.studies.sensitivity.results import (
     Constants,
-    Paper,
     Sensitivity,
     Shares,
     Sobol,
@@ -52,13 +50,10 @@ def run(study: Study, options: Options = Options()) -> Made[Sensitivity]:
         asked = population.surrogate(study, options.model)
         population.require_settling(asked)
         sobol, model = _sobol(study, asked.watched(options.at), options)
-        paper = contact_table.of_paper()
         found = Sensitivity(
             **population.answering(study, model),
             asked=options,
-            citation=published.CITATION,
             tables=tuple(tables(study, model)),
-            paper=Paper(rows=tuple(paper), largest=contact_table.largest(paper)),
             sobol=sobol,
         )
         return with_figures(found, page.figures, study.path("figures"))

@@ -1,5 +1,4 @@
-"""Figures of the sweeps: rates over size and direction as in the paper's Figures 11, 13 and 15,
-growth of the largest rates, and polar maps."""
+"""Figures of the sweeps: rates over size and direction, growth of the largest rates, and polar maps."""
 
 from collections.abc import Sequence
 
@@ -17,7 +16,6 @@ _LOOKS = {
 }
 _APART = 0.018  # shift as a share of the axis, so that points of three axes do not hide each other
 _WALLS = {"-y": NAVY, "+y": TEAL, "-z": AMBER, "+z": "#dfe3e8"}  # dark to light
-_FIGURES = {"misalignment": 11, "thrust_eccentricity": 13, "mass_eccentricity": 15}
 _ANGLE = {
     "misalignment": "phi, from +y towards +z",
     "thrust_eccentricity": "alpha, from +z towards +y",
@@ -26,11 +24,11 @@ _ANGLE = {
 _GROWTH = (
     "Largest rate over all directions against the size of the error; top: as given, below: with "
     "the stretched thrust. Grey: a free payload, w = I^-1 J (r x f). Shaded: the 95 % interval of "
-    "a knee before a plateau about y or z. Dotted: the plateau of the paper."
+    "a knee before a plateau about y or z."
 )
 _SCATTER = (
-    "Settled rates of all cases, as in the paper's Figure {figure}: against the size (left) and "
-    "the direction {angle} (right). Points of the three axes are shifted to be visible."
+    "Settled rates of all cases against the size (left) and the direction {angle} (right). Points "
+    "of the three axes are shifted to be visible."
 )
 _MAP = (
     "Settled rates over size (radius, {unit}) and direction ({angle}); the line is a rate of zero. "
@@ -45,8 +43,7 @@ def figures(found: Sweeps) -> list[Figure]:
     drawn = [Figure(_growth(found), _GROWTH)]
     for factor in given.factors:
         angle = _ANGLE[factor.name]
-        caption = _SCATTER.format(figure=_FIGURES[factor.name], angle=angle)
-        drawn.append(Figure(_scatter(factor), caption))
+        drawn.append(Figure(_scatter(factor), _SCATTER.format(angle=angle)))
         if sides := factor.sides:
             caption = _MAP.format(unit=factor.unit, angle=angle, jumps=_jumps(sides.jumps_deg_s))
             drawn.append(Figure(_map(factor, sides, given.faces), caption))
@@ -113,7 +110,6 @@ def _grown(launch: Launch, factor: Swept) -> Panel:
         shown = free <= 1.15 * top
         place, named = (np.array(sizes)[shown], free[shown]), axis == "y"
         lines.append(Line(*place, "free payload", GREY, 0.9, dash, legend=named))
-    lines.append(Line([factor.paper] * 2, [0.0, top], "the paper's plateau", GREY, dash=":"))
     how = "as given" if launch.stretch == 1.0 else f"thrust x {launch.stretch:g} as long"
     title, size = f"{factor.label}, {how}", f"size ({factor.unit})"
     return Panel(title, size, y_label="largest rate (deg/s)", lines=lines, spans=tuple(spans))

@@ -1,4 +1,4 @@
-"""How large an error may be: verdicts beside the paper's, the reason for a plateau, and the figures."""
+"""How large an error may be: verdicts, the reason for a plateau, and the figures."""
 
 from collections.abc import Iterator, Sequence
 
@@ -12,7 +12,6 @@ from tipoff.studies.sweeps.results import Curve, Launch, Sweeps, Swept
 _SHORT = {"rate_x_deg_s": "x", "rate_y_deg_s": "y", "rate_z_deg_s": "z", "rate_deg_s": "total"}
 _VERDICT = (
     "error",
-    Column("the paper", form="g"),
     "rate",
     "verdict",
     "knee, 95 % interval",
@@ -27,8 +26,8 @@ _METHOD = (
     f"a misfit (rms) above {100.0 * MISFIT:g} % of the largest rate."
 )
 _INTERVAL = (
-    "The paper: the size at which its plateau begins. The interval of a knee is a bootstrap over "
-    "directions. Plateau: the share of the resamples with this verdict."
+    "The interval of a knee is a bootstrap over directions. Plateau: the share of the resamples with "
+    "this verdict."
 )
 _FREE = (
     "Not free from: the first size at which a total rate differs by 5 % from that of a free "
@@ -69,10 +68,10 @@ def _launched(launch: Launch) -> list[Part]:
 
 
 def table_of_verdicts(launch: Launch) -> Table:
-    """Verdict of each rate over the sizes of an error, beside that of the paper."""
+    """Verdict of each rate over the sizes of an error."""
     rows = [
         (
-            *((factor.title, factor.paper) if first else ("", "")),
+            factor.title if first else "",
             rate,
             bent.verdict,
             None if bent.knee is None else Noted(bent.knee, span(bent.low, bent.high, ".2f")),

@@ -27,13 +27,12 @@ class Sides:
 class Swept:
     """An error over ``sizes`` in its ``unit`` and directions: ``values`` of ``answers.ALL`` by
     name, the ``largest`` over all directions, the same of a ``free`` payload, and the ``growth`` of
-    the largest rates, None if too few cases settled; ``paper``: size at which the plateau of the
-    paper begins; ``sides``: None without contact, and for a stretched thrust."""
+    the largest rates, None if too few cases settled; ``sides``: None without contact, and for a
+    stretched thrust."""
 
     name: str
     label: str
     unit: str
-    paper: float  # in ``unit``, as ``sizes``
     sizes: tuple[float, ...]
     angles_deg: tuple[float, ...]
     values: dict[str, tuple[Curve, ...]]
@@ -71,5 +70,4 @@ class Sweeps(Answering):
     after the exit."""
 
     asked: Options
-    citation: str
     launches: tuple[Launch, ...]

@@ -9,7 +9,6 @@ import numpy as np
 
 from tipoff.mechanics.instant import EXIT
 from tipoff.mechanics.run_limits import EXIT_WINDOW
-from tipoff.studies import published
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
@@ -47,7 +46,6 @@ def run(study: Study, options: Options = Options()) -> Made[Sweeps]:
         found = Sweeps(
             **population.answering(study, alone),
             asked=options,
-            citation=published.CITATION,
             launches=tuple(launches),
         )
         return with_figures(found, drawing.figures, study.path("figures"))
@@ -97,7 +95,6 @@ def _swept(
         name=factor.name,
         label=factor.label,
         unit=factor.unit,
-        paper=published.PLATEAUS[factor.name],
         sizes=tuple(SIZES.tolist()),
         angles_deg=tuple(np.degrees(directions).tolist()),
         values={name: tuple(map(_plain, table)) for name, table in values.items()},
