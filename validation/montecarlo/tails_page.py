@@ -98,6 +98,11 @@ def sentences(found: Tails) -> list[str]:
     return [agreement, _corrected(found), _cost(found)]
 
 
+def brief(found: Tails) -> list[str]:
+    """Agreement and corrected rates."""
+    return [_agreement(found), _corrected(found)]
+
+
 def _agreement(found: Tails) -> str:
     *_, everything = found.contacts
     gate, worst = found.gate_deg_s, number(everything.most, ".2g")
