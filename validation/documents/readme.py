@@ -39,7 +39,7 @@ from validation.montecarlo import tails_page
 _ROOT = Path(__file__).resolve().parents[2]
 _TITLE = """# Results on the reference scene
 
-Written by `python -m validation.documents.readme` from the files of `make full-report` and `make bench`. Times
+Written by `python -m validation.documents.readme` from the files of `make full-report`. Times
 of different tables may be from different days, so do not divide them by each other. The
 [glossary](glossary.md) has the terms, and [agreement](explanation/convergence_and_chaos.md) the limits.
 
