@@ -122,6 +122,11 @@ class SingleRun:
         surveyed, time = self.loop.after[face], float(self.loop.clock.now)
         return wall_ends.strike(self.model, face, self.system.faces[face], surveyed, time)
 
+    def release(self) -> None:
+        """Forget the compliance in the records of a run that has ended. On a long rail it is large, and
+        the next run may have one with other modes."""
+        self.system = self.system._replace(compliance=None)
+
     def usage(self) -> float:
         """Largest error of a ledger at the ends of steps over half of its promise."""
         return float(audit.usage(self.loop.audit, self.tolerance.total, self.tolerance.transverse))
@@ -213,6 +218,7 @@ def integrated(
         spent["compile_cpu_s"] += clock.thread_time() - cpu
     run_.integrate(progress)
     run_ = improved(run_, progress)
+    run_.release()
     spent["kernel_s"] += clock.perf_counter() - integrating
     return run_
 

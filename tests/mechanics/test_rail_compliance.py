@@ -1,6 +1,8 @@
 """The file of rail compliance, and which scenes it serves."""
 
 import io
+import tracemalloc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +12,7 @@ from tipoff import lowfi, scenes
 from tipoff.faults import SceneError
 from tipoff.files import write_sealed
 from tipoff.mechanics.laws.thermal import FIELDS
-from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, content, pairs
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, content, pairs, record
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 from tipoff.scenes.rail_compliance import digest, require
@@ -234,3 +236,53 @@ def test_friction_that_sticks_is_refused(compliance):
     law = {"law": "sticking", "static": 0.2, "dynamic": 0.2, "stiffness": 1e7, "damping": 1e4}
     with pytest.raises(SceneError, match="friction.law: given 'sticking', expected 'two-step'"):
         lowfi.run(SCENE.replace({"friction": law}), compliance=compliance)
+
+
+def test_splines_of_a_large_compliance_are_held_for_one_number_of_modes(monkeypatch):
+    """Of any of the compliances in memory. Control: those of a small one stay for every number."""
+    small = of_identity(5)
+    held = small.cubic(0)[0]
+    assert small.cubic(2)[0] is not held and small.cubic(0)[0] is held
+    monkeypatch.setattr(record, "LARGE", 0.0)
+    first, other = of_identity(5), of_identity(5)
+    for again in (first, other):
+        held = first.cubic(0)[0]
+        assert first.cubic(0)[0] is held
+        ended = weakref.ref(held)
+        del held
+        assert again.cubic(1)[0] is again.cubic(1)[0] and ended() is None
+
+
+def of_identity(stations: int) -> RailCompliance:
+    """Two faces on one rail that only move themselves, with two modes."""
+    flexibility = np.zeros((stations, 2, 2, PATTERNS, PATTERNS))
+    flexibility[:, [0, 1], [0, 1]] = np.eye(PATTERNS)
+    random = np.random.default_rng(2)
+    return RailCompliance(
+        np.linspace(0.0, 1.0, stations),
+        flexibility,
+        np.zeros(2, dtype=int),
+        np.ones((2, 2)),
+        np.array([[1e3, 2e3]]),
+        random.random((stations, 2, PATTERNS, 2)),
+        digest(SCENE),
+    )
+
+
+def test_the_rest_without_modes_takes_the_memory_of_one_table():
+    """Control: the products of the modes of all stations at once take another one."""
+    large = of_identity(20_000)
+    table, part = large.flexibility, large.shape.reshape(20_000, -1, 2) / large.frequency
+
+    def most(make) -> float:
+        tracemalloc.start()
+        found = make()
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert found is not None
+        return peak / table.nbytes
+
+    assert most(lambda: large.residual(2)) < 2.0 - 0.1
+    assert most(lambda: table - pairs.blocks(part @ part.swapaxes(1, 2), 2)) > 2.0 - 0.1
+    every = table - pairs.blocks(part @ part.swapaxes(1, 2), 2)
+    assert np.array_equal(large.residual(2), every)

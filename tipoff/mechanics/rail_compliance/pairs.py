@@ -5,7 +5,19 @@ A table (s,f,m,p,q) holds at [:, i, k] the block (p,q) between face i and the k-
 its rail. If a rail has fewer faces than another one, its last blocks are zero.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
+
+_AT_ONCE = 1e7  # bytes of the stations of a table that are computed together
+
+
+def few_stations(table: np.ndarray) -> Iterator[slice]:
+    """Parts of the stations of a ``table`` (s,...): the intermediate results of all stations of a long
+    rail would take several times its memory."""
+    stations = len(table)
+    most = max(1, int(_AT_ONCE * stations / max(table.nbytes, 1)))
+    return (slice(first, first + most) for first in range(0, stations, most))
 
 
 def members(rail: np.ndarray) -> np.ndarray:
@@ -50,14 +62,15 @@ def on_both_sides(each: np.ndarray, table: np.ndarray, rail: np.ndarray) -> np.n
     found = np.zeros((*table.shape[:3], each.shape[2], each.shape[2]))
     for row in members(rail):
         own = row[row >= 0]
-        part = np.einsum(
-            "siab,sijbc,sjdc->sijad",
-            each[:, own],
-            table[:, own, : own.size],
-            each[:, own],
-            optimize=True,
-        )
-        found[:, own, : own.size] = part
+        for few in few_stations(table):
+            part = np.einsum(
+                "siab,sijbc,sjdc->sijad",
+                each[few][:, own],
+                table[few][:, own, : own.size],
+                each[few][:, own],
+                optimize=True,
+            )
+            found[few][:, own, : own.size] = part
     return found
 
 

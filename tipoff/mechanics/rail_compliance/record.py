@@ -2,6 +2,7 @@
 
 import hashlib
 import threading
+import weakref
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -29,6 +30,7 @@ MODES = 20  # of each rail, stored with its compliance
 _KEEPING, _FINDING = threading.Lock(), threading.Lock()
 _KEPT_FACTORS = 4  # compliances at other factors that are kept in memory
 _ROUNDING = 1e-9  # of the norm of F: error of a zero eigenvalue due to the modes
+LARGE = 1e8  # bytes of F; splines, four times as large, are then held for one number of modes only
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -168,12 +170,22 @@ class RailCompliance(Shown):
         of the rising powers of the distance (m) from the one before, in the patterns of the parts of the
         faces that have a wall. And the largest displacement (f,n) in a mode of a point under a face,
         or more. Raises ValueError as ``residual`` does."""
-        if modes not in self._cubics:
+        found = self._cubics.get(modes)
+        if found is None:
+            self._make_room()
             shape, between = self.shape[..., :modes], self._between_faces(self.residual(modes))
             along = np.ascontiguousarray(self.cubic_of(shape).transpose(0, 1, 3, 4, 2))
             reach = np.abs(self.on_part.swapaxes(-1, -2) @ shape).sum(axis=2).max(axis=0)
-            self._cubics[modes] = between, along, reach
-        return self._cubics[modes]
+            found = self._cubics[modes] = between, along, reach
+        return found
+
+    def _make_room(self) -> None:
+        """Forget the splines of all ``LARGE`` compliances if this is one."""
+        if self._flexibility().nbytes > LARGE:
+            with _KEEPING:
+                for other in _WITH_SPLINES:
+                    other._cubics.clear()
+                _WITH_SPLINES.add(self)
 
     def cubic_of(self, moved: np.ndarray) -> np.ndarray:
         """Displacements (s,f,p,...) of the walls between stations (s-1,f,p,...,4), in the patterns of
@@ -218,14 +230,17 @@ class RailCompliance(Shown):
         rest = flexibility.copy()
         for row in self.members:
             own = row[row >= 0]
-            moved = part[:, own].reshape(len(part), -1, modes)
-            rest[:, own, : own.size] -= pairs.blocks(moved @ moved.swapaxes(1, 2), own.size)
-            left, every = (pairs.of_rail(table, own) for table in (rest, flexibility))
-            norm = np.linalg.norm(every, axis=(1, 2))
-            allowed = _ROUNDING * np.where(norm > 0.0, norm, 1.0)
-            if not pairs.is_positive(left + allowed[:, None, None] * np.eye(left.shape[1])):
-                words = "with more compliance than the wall has, expected modes of the same rail"
-                raise ValueError(f"modes: given {modes} {words}")
+            for few in pairs.few_stations(rest):
+                here, moved = rest[few], part[few][:, own].reshape(len(rest[few]), -1, modes)
+                here[:, own, : own.size] -= pairs.blocks(moved @ moved.swapaxes(1, 2), own.size)
+                left, every = (pairs.of_rail(table, own) for table in (here, flexibility[few]))
+                norm = np.linalg.norm(every, axis=(1, 2))
+                allowed = _ROUNDING * np.where(norm > 0.0, norm, 1.0)
+                if not pairs.is_positive(left + allowed[:, None, None] * np.eye(left.shape[1])):
+                    words = (
+                        "with more compliance than the wall has, expected modes of the same rail"
+                    )
+                    raise ValueError(f"modes: given {modes} {words}")
         return rest
 
     def _flexibility(self) -> np.ndarray:
@@ -369,3 +384,6 @@ def content(compliance: RailCompliance) -> bytes:
     known = compliance.__getstate__()
     known.pop("find_joints")
     return stored.content(known)
+
+
+_WITH_SPLINES: weakref.WeakSet[RailCompliance] = weakref.WeakSet()  # those that are ``LARGE``
