@@ -161,12 +161,16 @@ def narrowed(item: Distribution, share: float, about: float | None = None) -> Di
     """The distribution of ``c + share (x - c)`` of a number x with the distribution ``item``; c is ``about``
     (SI), or the middle of ``item``: its mean, the middle between its limits (of their logarithms, if it is
     log-uniform), and zero of a Rayleigh distribution. The quantile at each probability moves in the same
-    way, so both distributions have the same draws."""
+    way, so both distributions have the same draws. It is fixed at c for a ``share`` of zero."""
     if about is None and isinstance(item, LogUniform):
-        middle = np.sqrt(item.low * item.high)
+        middle = float(np.sqrt(item.low * item.high))
+        if share == 0.0:
+            return fixed(middle)
         ends = {name: middle * (getattr(item, name) / middle) ** share for name in ("low", "high")}
         return item.model_copy(update=ends)
     centre = _middle(item) if about is None else about
+    if share == 0.0:
+        return fixed(centre)
     moved: dict[str, float] = {}
     for name in type(item).model_fields:
         if name in ("value", "mean", "low", "high"):
@@ -174,6 +178,11 @@ def narrowed(item: Distribution, share: float, about: float | None = None) -> Di
         elif name in ("sd", "scale"):
             moved[name] = share * getattr(item, name)
     return item.model_copy(update=moved)
+
+
+def fixed(value: float) -> Fixed:
+    """The distribution of one ``value`` (SI)."""
+    return Fixed.model_construct(distribution="fixed", value=value, provenance="")
 
 
 def _middle(item: Distribution) -> float:

@@ -1,11 +1,13 @@
-"""Tolerances of a file of errors, and the file with one of them halved.
+"""Tolerances of a file of errors, and the file with one of them halved, or scaled.
 
 A tolerance is the scatter of one input, or of an offset (misalignment, eccentricity), whose keys are one
 vector. An offset in any direction has half the size for the same draw; all other inputs move halfway to
-the middle of their distribution. So a halved tolerance changes no draw of any input.
+the middle of their distribution. So a halved tolerance changes no draw of any input. Another scale than a half
+does the same.
 """
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -38,18 +40,29 @@ def tolerances(errors: Uncertainty) -> dict[str, tuple[str, ...]]:
 
 def halved(errors: Uncertainty, name: str) -> Uncertainty:
     """``errors`` with the tolerance ``name`` of ``tolerances`` halved."""
-    changed = {key: _half(errors, name, key) for key in tolerances(errors)[name]}
+    return scaled(errors, {name: _HALF})
+
+
+def scaled(errors: Uncertainty, scales: Mapping[str, float]) -> Uncertainty:
+    """``errors`` with each tolerance of ``tolerances`` times its scale, by name; of a scale of zero, the inputs
+    have one value."""
+    every = tolerances(errors)
+    changed = {
+        key: _scaled(errors, name, key, scale)
+        for name, scale in scales.items()
+        for key in every[name]
+    }
     return errors._replace(vary=errors.vary | changed)
 
 
-def _half(errors: Uncertainty, name: str, key: str) -> Distribution:
+def _scaled(errors: Uncertainty, name: str, key: str, scale: float) -> Distribution:
     item = errors.vary[key]
     if _whole_turn(item):
         return item
     from_zero = key.endswith(".axial") and (
         _any_direction(errors, name) or (isinstance(item, Uniform) and item.low == 0.0)
     )
-    return narrowed(item, _HALF, 0.0 if from_zero else None)
+    return narrowed(item, scale, 0.0 if from_zero else None)
 
 
 def _any_direction(errors: Uncertainty, name: str) -> bool:

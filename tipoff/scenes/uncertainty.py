@@ -31,7 +31,7 @@ from pydantic import Field, ValidationError, model_validator
 from tipoff.faults import Fault, SceneError, close
 from tipoff.scenes import overrides as keys
 from tipoff.scenes import polar, reading
-from tipoff.scenes.distributions import BY_NAME, Distribution, Fixed
+from tipoff.scenes.distributions import BY_NAME, Distribution, fixed
 from tipoff.scenes.faults import faults_of, renamed, within
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.table import Table
@@ -205,10 +205,7 @@ def _whole_offsets(found: dict[str, Distribution], scene: Scene) -> dict[str, Di
         if own := polar.component(key):
             for axis in polar.COMPONENTS:
                 value = component_of(scene, f"{own[0]}.{axis}")
-                made.setdefault(
-                    f"{own[0]}.{axis}",
-                    Fixed.model_construct(distribution="fixed", value=value, provenance=""),
-                )
+                made.setdefault(f"{own[0]}.{axis}", fixed(value))
     return made
 
 

@@ -19,7 +19,7 @@ from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.cli import app
-from tipoff.studies.limits import constants, within
+from tipoff.studies.limits import constants, search, within
 from tipoff.studies.limits import page as pictures
 from tipoff.studies.limits import stage as limits
 from tipoff.studies.limits.options import Options
@@ -225,25 +225,32 @@ def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
         assert [item.name for item in row.beside] == [item.name for item in answers.ALL]
 
 
-@pytest.mark.parametrize("tolerances, advised", [("advised", 1.0), ("table3", None)])
-def test_the_paper_advises_one_set_alone(study, monkeypatch, tolerances, advised):
-    options = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=30, tolerances=tolerances)
-    searches = limits.Search(
-        study,
-        options,
-        exceedance.limits(options.limits),
-        30,
-        Surrogate(study.scene, None, None),
-        constants.Margin(None, ""),
-        lambda _: None,
-    )
+def searches(study, options):
+    model, margin = Surrogate(study.scene, None, None), constants.Margin(None, "")
+    of_limits = exceedance.limits(options.limits)
+    return limits.Search(study, options, of_limits, options.cases, model, margin, lambda _: None)
+
+
+@pytest.mark.parametrize("vary, beside", [(None, 0.2), ("paper", 1.0)])
+def test_the_advice_of_the_paper_stands_beside_its_set_alone(study, monkeypatch, vary, beside):
+    """Beside the tolerances of a file stand those that it states, once each."""
+    options = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=30, vary=vary)
     monkeypatch.setattr(within.Cases, "values", lambda *_: np.zeros((30, len(answers.ALL))))
     monkeypatch.setattr(limits.Search, "pairs", lambda *_: None)
-    row = row_of(found := searches.all(), "together")
-    assert (row.advised and row.advised.tolerance) == advised
-    assert row_of(found, "misalignment").advised.tolerance == pytest.approx(0.2)
-    advice = pictures.table_of(found).heads.index("the paper advises")
-    assert pictures.table_of(found).rows[-1][advice] == advised
+    found = searches(study, options).all()
+    first, *_, last = found.rows
+    assert first.advised.tolerance == pytest.approx(beside) and last.advised.tolerance == 1.0
+    assert ("the paper advises" in pictures.table_of(found).heads) == (vary is None)
+
+
+def test_a_factor_without_a_trial_above_zero_has_no_curve(found):
+    """The control: the others have one."""
+    row = replace(found.rows[0], nominal=search.Found(search.LOST))
+    curves, *_ = pictures.figures(replace(found, rows=(row, *found.rows[1:])))
+    assert len(curves.chart.panels) == len(found.rows) - 1
+    assert all(
+        each.chart.name != "limits-curves" for each in pictures.figures(replace(found, rows=(row,)))
+    )
 
 
 def test_section_of_the_page(study, found):

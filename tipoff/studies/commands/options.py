@@ -282,15 +282,18 @@ SeedOfFile = Annotated[
         "--seed", metavar="N", min=0, help="Seed of all draws; default: that of the file."
     ),
 ]
-Vary = Annotated[
-    str | None,
-    typer.Option(
+
+
+def errors_file(default: str) -> Any:
+    """A file of errors; ``default``: without the option."""
+    return typer.Option(
         "--vary",
         metavar="NAME_OR_FILE",
-        help="Distributions: a .toml file, or a name of the catalogue; default: studies.errors of "
-        "the scene, else paper.",
-    ),
-]
+        help=f"Distributions of errors: a .toml file, or a name of the catalogue; default: {default}.",
+    )
+
+
+Vary = Annotated[str | None, errors_file("studies.errors of the scene, else paper")]
 Neighbours = Annotated[
     int | None,
     typer.Option(

@@ -2,10 +2,11 @@
 limits with a given probability; writes limits.json.
 
 The result has each tolerance alone, all tolerances together, and pairs of misalignment and
-mass eccentricity. It includes the uncertainty of the constants and of the model.
+mass eccentricity. It includes the uncertainty of the constants and of the model. With --vary, the
+tolerances are those of a file of errors, as multiples of their scatter.
 
   tipoff limits --limit "x=2 deg/s" --limit "5 deg/s" --probability 0.99
-  tipoff limits --limit "10 deg/s" --others zero --tolerances table3
+  tipoff limits --limit "10 deg/s" --others zero --vary my_errors.toml
   tipoff limits --limit "10 deg/s" --probability 0.95 --certify 200
 """
 

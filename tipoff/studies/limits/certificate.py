@@ -17,7 +17,7 @@ from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.scene import Scene
 from tipoff.studies.limits.options import Options
-from tipoff.studies.limits.within import Cases
+from tipoff.studies.limits.within import Cases, Source, source
 from tipoff.studies.populations import draws, exceedance, stratified
 from tipoff.studies.populations.draws import Lost
 from tipoff.studies.populations.exceedance import Limit
@@ -31,12 +31,13 @@ STRATA = ("above", "near", "far")
 
 
 class Within(NamedTuple):
-    """Cases within tolerances (SI) by name of an error: the surrogate ``model``, and the ``scene`` of the
-    reference with the same errors."""
+    """Cases within tolerances (SI) by name of an error, of a ``source``: the surrogate ``model``, and the
+    ``scene`` of the reference with the same errors."""
 
     model: Surrogate
     scene: Scene
     tolerances: dict[str, float]
+    source: Source = source
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +50,8 @@ class Stratum(Runs):
 
 @dataclass(frozen=True, kw_only=True)
 class Certificate(Bound):
-    """The bound from the ``strata`` of all ``cases`` within the ``tolerances`` (SI); ``near``: of a limit,
+    """The bound from the ``strata`` of all ``cases`` within the ``tolerances`` (SI; multiples of those of a
+    file of errors); ``near``: of a limit,
     where the second one begins; ``plain``: the bound of as many runs without strata, none above;
     ``needed``: the number of runs that would certify, None where none does; ``lost``: runs that did not
     settle."""
@@ -72,17 +74,25 @@ def made(
     """The bound from ``options.certify`` runs of the reference, among ten times the ``cases`` of the
     search."""
     assert options.certify is not None
-    tried = Cases(study, "limits", within.model, within.tolerances, TIMES * cases, options.seed + 1)
+    tried = Cases(
+        study,
+        "limits",
+        within.model,
+        within.tolerances,
+        TIMES * cases,
+        options.seed + 1,
+        within.source,
+    )
     above, *places = strata(tried.rates(1.0), limits)
     counts = (len(above), len(places[0]), len(places[1]))
     numbers = stratified.allocated(counts, options.certify, options.confidence)
     chosen = [place[:count] for place, count in zip(places, numbers)]
-    source = tried.source(1.0)
+    drawn = tried.source(1.0)
     requested = [
         draws.reference(
             study,
             f"{options.condition or NOMINAL}-tolerances-case{case}-coarse",
-            within.scene.replace(dict(source.rows(case, case + 1)[0])),
+            within.scene.replace(dict(drawn.rows(case, case + 1)[0])),
             study.settings.coarse_size,
         )
         for case in np.concatenate(chosen).tolist()

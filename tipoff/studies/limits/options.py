@@ -5,7 +5,14 @@ from typing import Annotated, Literal
 
 import typer
 
-from tipoff.studies.commands.options import At, Seed, Surrogate, condition_names, rate_limits
+from tipoff.studies.commands.options import (
+    At,
+    Seed,
+    Surrogate,
+    condition_names,
+    errors_file,
+    rate_limits,
+)
 from tipoff.workspace.options import between
 
 
@@ -13,7 +20,7 @@ from tipoff.workspace.options import between
 class Options:
     """``limits`` in the form of ``exceedance.limits``; ``cases`` None: ten times the fewest; ``draws``
     None: eight, for springs alone; ``condition`` None: the scene; ``certify`` None: no run of the
-    reference; ``model`` and ``at`` None: the default."""
+    reference; ``vary`` None: no file of errors; ``model`` and ``at`` None: the default."""
 
     limits: Annotated[
         tuple[str, ...],
@@ -37,13 +44,12 @@ class Options:
             help="Cases of each set of tolerances; default: ten times the smallest possible number.",
         ),
     ] = None
-    tolerances: Annotated[
-        Literal["advised", "table3"],
-        typer.Option(
-            help="Tolerances that are scaled together: those that the paper advises, or the ranges of its "
-            "Table 3."
+    vary: Annotated[
+        str | None,
+        errors_file(
+            "thrust, mass, clearance and friction of the scene, and the set that the paper advises"
         ),
-    ] = "advised"
+    ] = None
     others: Annotated[
         Literal["scene", "zero"],
         typer.Option(help="Errors that do not vary: values of the scene, or zero."),

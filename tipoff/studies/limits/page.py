@@ -1,5 +1,5 @@
-"""Certified tolerances: a table beside the paper's advice, the share of cases above a limit by
-tolerance, and a map of two tolerances."""
+"""Certified tolerances: a table beside the paper's advice or the tolerances of a file of errors, the share
+of cases above a limit by tolerance, and a map of two tolerances."""
 
 from collections.abc import Callable, Sequence
 from operator import attrgetter
@@ -19,7 +19,7 @@ from tipoff.workspace.words import counted
 _CURVES = (
     "Share of {cases:,} cases above a limit against the tolerance, with the same draws at every "
     "tolerance. Dotted: its upper bound at {confidence:.0%} confidence; horizontal: the allowed "
-    "share 1 - p. Vertical: the largest certified tolerance; dashed: the advice of the paper."
+    "share 1 - p. Vertical: the largest certified tolerance; dashed: {known}."
 )
 _MAP = (
     "Both errors vary; on an axis the other error is zero. Pairs between the line and the "
@@ -29,6 +29,11 @@ _TOLERANCE = (
     "A tolerance is three sigma of a normal distribution; larger values are drawn again. The "
     "direction of an error is random. One factor varies at a time, and the errors of the others "
     "are {others}. The last row scales a whole set."
+)
+_OF_FILE = (
+    "A tolerance is a multiple of the scatter of {vary}, whose distributions the cases have; its number of "
+    "cases and seed are not used. One tolerance varies at a time, and the other inputs are {others}. The last "
+    "row scales all. Ranges have 95 % of the values. A case that the scene refuses counts as above."
 )
 _CERTIFIED = (
     "Certified: the upper bound of the probability that a rate is above its limit is at most "
@@ -42,11 +47,21 @@ _REASONS = {
     NONE: "none, a limit is exceeded even at zero",
     LOST: "none, the model error exceeds a limit",
 }
-_COLUMNS: tuple[tuple[str, Callable[[CertifiedFactor], Any]], ...] = (
+_Columns = tuple[tuple[str, Callable[[CertifiedFactor], Any]], ...]
+_FIRST: _Columns = (
     ("tolerance of", lambda row: row.words + _unit(row.unit, " ({})")),
     ("largest certified", lambda row: value(row.nominal)),
+)
+_PAPER: _Columns = (
     ("the paper advises", lambda row: row.advised and row.advised.tolerance),
     ("limits kept there", lambda row: row.advised and _kept(row.advised)),
+)
+_FILE: _Columns = (
+    ("its range", lambda row: row.certified),
+    ("as stated", lambda row: row.stated),
+    ("limits kept as stated", lambda row: row.advised and _kept(row.advised)),
+)
+_UNCERTAIN: _Columns = (
     ("other constants", lambda row: row.constants and extent(row.constants)),
     ("with model error", lambda row: row.model and value(row.model)),
     ("worst constants, model error", lambda row: row.both and value(row.both)),
@@ -64,9 +79,13 @@ _SHARES = (
 
 def figures(found: Limits) -> list[Figure]:
     """Each figure with its caption."""
-    panels = [_panel(row, found) for row in found.rows]
-    curves = Chart("limits-curves", panels, columns=3, height=260)
-    shown = [Figure(curves, _CURVES.format(**vars(found)))]
+    # a logarithmic axis has no place for a tolerance of zero
+    drawn = [row for row in found.rows if any(size > 0.0 for size, _ in row.nominal.trials)]
+    shown = []
+    if drawn:
+        panels = [_panel(row, found) for row in drawn]
+        caption = _CURVES.format(known=_known(found), **vars(found))
+        shown.append(Figure(Chart("limits-curves", panels, columns=3, height=260), caption))
     if found.map:
         shown.append(Figure(_map(found.map, found.probability), _MAP))
     return shown
@@ -85,15 +104,23 @@ def draw(found: Limits) -> list[Part]:
         *([] if found.certificate is None else [_strata(found.certificate)]),
         *figures(found),
         *_beside(found),
-        _ADVICE,
+        *([_ADVICE] if found.asked.vary is None else []),
     ]
+
+
+def _known(found: Limits) -> str:
+    """What a tolerance is compared with."""
+    return "the advice of the paper" if found.asked.vary is None else "as stated in the file"
 
 
 def table_of(found: Limits) -> Table:
     """One row for each factor, without the columns that are empty in all rows."""
-    shown = [column for column in _COLUMNS if any(column[1](row) is not None for row in found.rows)]
+    vary = found.asked.vary
+    columns = (*_FIRST, *(_PAPER if vary is None else _FILE), *_UNCERTAIN)
+    shown = [column for column in columns if any(column[1](row) is not None for row in found.rows)]
+    others = "as in the scene" if found.asked.others == "scene" else "zero"
     notes = (
-        _TOLERANCE.format(others="as in the scene" if found.asked.others == "scene" else "zero"),
+        (_TOLERANCE if vary is None else _OF_FILE).format(others=others, vary=vary),
         _CERTIFIED.format(most=1.0 - found.probability, **vars(found)),
         _uncertain(found),
     )
@@ -238,9 +265,15 @@ def _panel(row: CertifiedFactor, found: Limits) -> Panel:
     if (most := row.nominal.tolerance) is not None:
         lines.append(Line([most] * 2, ends, "largest certified", VERMILION, 1.8))
     if row.advised and sizes[0] <= (advice := row.advised.tolerance) <= sizes[-1]:
-        lines.append(Line([advice] * 2, ends, "advised by the paper", AMBER, 1.8, "--"))
+        lines.append(Line([advice] * 2, ends, _known(found), AMBER, 1.8, "--"))
     title = row.words.partition(",")[0]
-    unit = "times the set" if row.name == TOGETHER else row.unit.replace("1", "dimensionless")
+    unit = (
+        "times the set"
+        if row.name == TOGETHER
+        else "dimensionless"
+        if row.unit == "1"
+        else row.unit
+    )
     return Panel(title, f"tolerance ({unit})", "share above a limit", lines, log=True)
 
 

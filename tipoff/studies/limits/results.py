@@ -14,7 +14,8 @@ from tipoff.studies.populations.spread import Quantile
 
 @dataclass(frozen=True, kw_only=True)
 class Advised:
-    """Cases above a limit at the ``tolerance`` that the paper advises, with bounds of their share."""
+    """Cases above a limit at the ``tolerance`` that the paper advises, or that a file of errors states,
+    with bounds of their share."""
 
     tolerance: float  # in the unit of the row
     above: int
@@ -38,11 +39,17 @@ class CertifiedFactor:
     unit: str  # of all tolerances of the row
     most: float  # the largest searched tolerance
     nominal: Found  # with nominal constants
-    advised: Advised | None  # None if the paper advises no tolerance
+    advised: (
+        Advised | None
+    )  # None if the paper advises no tolerance; that of a file, if one is given
     constants: tuple[Found, ...] | None = None  # with each draw of the constants
     model: Found | None = None  # with limits less the error of the model
     both: Found | None = None  # with the worst draw and these limits
     beside: tuple[Magnitude, ...] | None = None  # quantities at the certified tolerance
+    # 95 % of the values with their unit, as a file of errors states them, and at the certified
+    # tolerance; None without a file
+    stated: str | None = None
+    certified: str | None = None
 
 
 @dataclass(frozen=True)

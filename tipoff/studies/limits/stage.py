@@ -22,6 +22,9 @@ import numpy as np
 from tipoff.comparison import order_statistics
 from tipoff.faults import Fault, SceneError, together
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
+from tipoff.scenes import halving, uncertainty
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.limits import certificate, constants, search, within
 from tipoff.studies.limits.certificate import Certificate
 from tipoff.studies.limits.options import Options
@@ -35,7 +38,7 @@ from tipoff.studies.limits.results import (
     Pair,
 )
 from tipoff.studies.limits.search import Found
-from tipoff.studies.limits.within import ADVISED, SETS, TOGETHER, Cases, Factor
+from tipoff.studies.limits.within import ADVISED, REACH, TOGETHER, Cases, Factor
 from tipoff.studies.populations import answers, exceedance, population, spread
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
@@ -47,16 +50,16 @@ from tipoff.workspace.study import Study
 NAME = "limits"
 TIMES_NEEDED = 10  # times the smallest number of cases, so that some cases may be above a limit
 DRAWS = 8
-PAIR = ("misalignment", "mass_eccentricity")
 RAYS = 5  # rays between the axes of the map of two tolerances
-_REACH = 5.0  # largest multiple of a whole set
 
 
 def run(study: Study, options: Options = Options()) -> Made[Limits]:
     """The certified tolerances. Raises SceneError listing every fault of the input, and StudyError
     if the payload does not leave the rail even without errors."""
-    (limits, cases), _ = together(
-        lambda: checked(options), lambda: options.condition and study.condition(options.condition)
+    (limits, cases), *_ = together(
+        lambda: checked(options),
+        lambda: options.condition and study.condition(options.condition),
+        lambda: options.vary and _errors(options.vary, study.scene),
     )
     model = population.surrogate(study, options.model, options.condition)
     margin = constants.margin(study, options.model or COMPLIANT)
@@ -78,7 +81,18 @@ def run(study: Study, options: Options = Options()) -> Made[Limits]:
 
 
 def _inputs(study: Study, options: Options) -> dict:
-    return vars(constants.margin(study, options.model or COMPLIANT))
+    margin = vars(constants.margin(study, options.model or COMPLIANT))
+    if options.vary is None:
+        return margin
+    return margin | {"errors": _errors(options.vary, study.scene).resolved()}
+
+
+def _errors(vary: str, scene: Scene) -> Uncertainty:
+    """The errors of a file for ``scene``. Raises SceneError with every fault."""
+    found = uncertainty.load(vary, scene)
+    if not halving.tolerances(found):
+        raise SceneError([Fault(vary, "vary", "fixed values", "a distribution with a scatter")])
+    return found
 
 
 STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Limits)
@@ -137,7 +151,12 @@ class Search:
         self.study, self.options, self.limits, self.cases = study, options, limits, cases
         self.margin = margin
         self.model = model if options.others == "scene" else within.without_errors(model)
-        self.factors = within.factors(self.model.scene)
+        self.inputs = (
+            within.of_paper(self.model.scene)
+            if options.vary is None
+            else within.of_file(_errors(options.vary, self.model.scene))
+        )
+        self.factors = self.inputs.factors
         allowed = exceedance.allowed(cases, options.probability, options.confidence)
         assert allowed is not None  # ``checked`` has refused fewer cases
         self.allowed = allowed
@@ -160,9 +179,7 @@ class Search:
     def all(self) -> Limits:
         """The whole result."""
         full = {name: {name: factor.most} for name, factor in self.factors.items()}
-        full[TOGETHER] = {
-            name: _REACH * size for name, size in SETS[self.options.tolerances].items()
-        }
+        full[TOGETHER] = {name: REACH * size for name, size in self.inputs.whole.items()}
         together = self._choose_modes(full[TOGETHER])
         self.others = [self.model.at(item) for item in self.overrides]
         searched = {
@@ -180,7 +197,7 @@ class Search:
             constants=Drawn(len(self.others), tuple(self.drawn)),
             margin=self.margin,
             rows=tuple(self._row(name, full[name], searched[name]) for name in full),
-            map=self.pairs(searched[PAIR[0]].tolerance or 0.1),
+            map=self.pairs(self.inputs.pair, searched) if self.inputs.pair else None,
             certificate=self.certified(full[TOGETHER], together),
             evaluations=self.evaluations,
         )
@@ -196,7 +213,8 @@ class Search:
             scale = found.fails if found.tolerance is None else found.tolerance
             assert scale is not None  # a search fails somewhere or certifies a scale
             sizes = {name: scale * size for name, size in tolerances.items()}
-            chosen = within.with_modes(choosing, sizes, self.cases, self.options.seed)
+            drawn = self.inputs.source(choosing.scene, sizes, self.cases, self.options.seed)
+            chosen = within.with_modes(choosing, drawn)
             if chosen.mode_count > self.model.mode_count:
                 self.model = chosen
                 continue
@@ -214,12 +232,13 @@ class Search:
         if self.options.others != "scene":
             reference = within.without_errors(reference)
         sizes = {key: found.tolerance * size for key, size in tolerances.items()}
-        checked_within = certificate.Within(self.model, reference.scene, sizes)
+        checked_within = certificate.Within(self.model, reference.scene, sizes, self.inputs.source)
         return certificate.made(self.study, self.options, self.limits, self.cases, checked_within)
 
     def _of(self, tolerances: dict[str, float], model: Surrogate | None = None) -> Cases:
         seed = self.options.seed
-        return Cases(self.study, NAME, model or self.model, tolerances, self.cases, seed)
+        source = self.inputs.source
+        return Cases(self.study, NAME, model or self.model, tolerances, self.cases, seed, source)
 
     def _above(self, cases: Cases, limits: list[Limit]) -> Callable[[float], int]:
         def count(scale: float) -> int:
@@ -238,11 +257,10 @@ class Search:
         return search.near(self._above(cases, limits), self.allowed, start, most)
 
     def _row(self, name: str, tolerances: dict[str, float], found: Found) -> CertifiedFactor:
-        # The paper advises one of the sets; it advises no multiple of its Table 3.
-        advised = 1.0 / _REACH if self.options.tolerances == "advised" else None
         factor = self.factors.get(name) or Factor(
-            "all together, multiple of the set", "1", 1.0 / _REACH, 1.0, advised
+            "all together, multiple of the set", "1", 1.0 / REACH, 1.0, 1.0 / REACH
         )
+        words = self.inputs.words if name in self.factors else None
         size = factor.most / factor.scale
         row = CertifiedFactor(
             name=name,
@@ -251,6 +269,7 @@ class Search:
             most=size,
             nominal=found.times(size),
             advised=self._advised(tolerances, factor),
+            stated=words and words(name, 1.0),
         )
         if found.tolerance is None:
             return row
@@ -270,6 +289,7 @@ class Search:
             model=model,
             both=both,
             beside=self._beside(cases.values(start)),
+            certified=words and words(name, start * factor.most),
         )
 
     def _beside(self, values: np.ndarray) -> tuple[Magnitude, ...]:
@@ -292,7 +312,7 @@ class Search:
         return [Limit(limit.axis, limit.deg_s - error[limit.axis]) for limit in self.limits]
 
     def _advised(self, tolerances: dict[str, float], factor: Factor) -> Advised | None:
-        """Cases above a limit at the tolerance that the paper advises."""
+        """Cases above a limit at the tolerance that the paper advises, or the file states."""
         if factor.advised is None:
             return None
         count = self._above(self._of(tolerances), self.limits)(factor.advised / factor.most)
@@ -306,17 +326,18 @@ class Search:
             certified=count <= self.allowed,
         )
 
-    def pairs(self, start: float) -> Map | None:
+    def pairs(self, names: tuple[str, str], searched: dict[str, Found]) -> Map | None:
         """Certified pairs of two tolerances on rays from one axis to the other; each search starts
-        at the last result. None without such a pair."""
-        one, two = (self.factors[name] for name in PAIR)
+        at the last result, the first at that of the first one alone. None without such a pair."""
+        one, two = (self.factors[name] for name in names)
+        start = searched[names[0]].tolerance or 0.1
         points = []
         for number in range(RAYS + 2):
             angle = 0.5 * math.pi * number / (RAYS + 1)
             shares = [round(part, 12) for part in (math.cos(angle), math.sin(angle))]
             edge = 1.0 / max(shares)  # there one of the two reaches its largest searched tolerance
             ray = {
-                name: share * factor.most for name, share, factor in zip(PAIR, shares, (one, two))
+                name: share * factor.most for name, share, factor in zip(names, shares, (one, two))
             }
             found = self._near(self._of(ray), self.limits, min(start, edge), edge)
             if found.tolerance is not None:
@@ -329,9 +350,9 @@ class Search:
         if not points:
             return None
         return Map(
-            names=PAIR,
+            names=names,
             words=(one.words, two.words),
             units=(one.unit, two.unit),
-            advised=(ADVISED[PAIR[0]] / one.scale, ADVISED[PAIR[1]] / two.scale),
+            advised=(ADVISED[names[0]] / one.scale, ADVISED[names[1]] / two.scale),
             points=tuple(points),
         )

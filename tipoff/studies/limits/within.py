@@ -3,11 +3,15 @@ with T for three sigma. A value beyond T is drawn again, because an inspection w
 error of thrust or mass has a uniform direction around the axis.
 
 A case has the same draws for all sets of tolerances, so two sets do not differ by chance.
+
+A tolerance of a file of errors is a multiple of the scatter that the file states (``scenes.halving``); its
+cases have the distributions of the file.
 """
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,7 +22,10 @@ from tipoff.cache import Cache, binary
 from tipoff.files import content_hash, labelled_netcdf
 from tipoff.lowfi.ensemble import columns, pilot
 from tipoff.lowfi.ensemble.derived import Derived, Numbers, around_zero, friction, law
+from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.threads import PIECE, completed
+from tipoff.scenes import halving
+from tipoff.scenes import overrides as keys
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.populations import answers
@@ -33,15 +40,17 @@ ADVISED = {
     "thrust_eccentricity": 0.4e-3,
     "mass_eccentricity": 0.2e-3,
 }
-TABLE3 = {name: error.three_sigma for name, error in ERRORS.items()}
-SETS = {"advised": ADVISED, "table3": TABLE3}
-_REACH = 5.0  # times the advised tolerances: up to the largest misalignment of the paper's sweep
+REACH = 5.0  # times the advised tolerances: up to the largest misalignment of the paper's sweep
+PAIR = ("misalignment", "mass_eccentricity")
+Source = Callable[[Scene, dict[str, float], int, int], Derived | Drawn]
+"""Cases of a scene within tolerances by name, from their number and a seed."""
 
 
 class Factor(NamedTuple):
     """A factor with a tolerance: ``words`` for a reader, the displayed ``unit`` and its size
     ``scale`` (SI), the largest searched tolerance ``most`` (SI), and the tolerance that the paper
-    advises (SI), or None."""
+    advises (SI), or None. Of a file of errors, tolerances are multiples: SI is one, and 1.0 is that of the
+    file in place of an advised one."""
 
     words: str
     unit: str
@@ -53,7 +62,7 @@ class Factor(NamedTuple):
 def factors(scene: Scene) -> dict[str, Factor]:
     """Every factor that ``scene`` has, by name."""
     found = {
-        name: Factor(error.words, error.unit, error.scale, _REACH * ADVISED[name], ADVISED[name])
+        name: Factor(error.words, error.unit, error.scale, REACH * ADVISED[name], ADVISED[name])
         for name, error in ERRORS.items()
     }
     if scene.contact is not None and scene.contact.narrowest() > 0.0:
@@ -65,6 +74,51 @@ def factors(scene: Scene) -> dict[str, Factor]:
             "friction coefficient, about its nominal value", "1", 1.0, scene.friction.dynamic, None
         )
     return found
+
+
+class Inputs(NamedTuple):
+    """The ``factors`` whose tolerances are searched by name, the ``whole`` set that is scaled together by
+    name, the ``source`` of its cases, the ``pair`` of a map, None without one, and 95 % of the values of a
+    factor within a tolerance in ``words``; None if they are not from a file."""
+
+    factors: dict[str, Factor]
+    whole: dict[str, float]
+    source: Source
+    pair: tuple[str, str] | None = None
+    words: Callable[[str, float], str] | None = None
+
+
+def of_paper(scene: Scene) -> Inputs:
+    """The factors of ``scene``; the set is that which the paper advises."""
+    return Inputs(factors(scene), ADVISED, source, PAIR)
+
+
+def of_file(errors: Uncertainty) -> Inputs:
+    """The tolerances of a file of ``errors``, as multiples of those that it states."""
+    names = list(halving.tolerances(errors))
+
+    def words(name: str, multiple: float) -> str:
+        return halving.words(halving.scaled(errors, {name: multiple}), name)
+
+    return Inputs(
+        {name: Factor(name, "times as stated", 1.0, REACH, 1.0) for name in names},
+        dict.fromkeys(names, 1.0),
+        partial(_of_file, errors),
+        words=words,
+    )
+
+
+def _of_file(
+    errors: Uncertainty, scene: Scene, multiples: dict[str, float], cases: int, seed: int
+) -> Drawn:
+    """Cases of ``errors`` with ``multiples`` of the tolerances by name. An input of another tolerance is
+    that of the ``scene``; one that has no tolerance is that of the file."""
+    scaled = halving.scaled(errors, multiples)
+    every = halving.tolerances(errors)
+    others = {key for name, own in every.items() if name not in multiples for key in own}
+    factors_ = {key: keys.held(scene, key) for key in errors.factors}
+    vary = {key: item for key, item in scaled.vary.items() if key not in others}
+    return Drawn(Uncertainty(cases, seed, "random", vary, factors_))
 
 
 def without_errors(model: Surrogate) -> Surrogate:
@@ -99,14 +153,13 @@ def _overrides(scene: Scene, tolerances: dict[str, float], drawn: Numbers) -> Nu
     return found
 
 
-def with_modes(model: Surrogate, tolerances: dict[str, float], cases: int, seed: int) -> Surrogate:
-    """``model`` with the number of rail modes that pilot cases within ``tolerances`` (SI) choose."""
-    drawn = source(model.scene, tolerances, cases, seed)
+def with_modes(model: Surrogate, drawn: Derived | Drawn) -> Surrogate:
+    """``model`` with the number of rail modes that pilot cases of ``drawn`` choose."""
     return model.with_modes_of(pilot.settled(model.ensemble(drawn)))
 
 
 class Cases:
-    """Results of ``model`` within ``tolerances`` (SI) times a scale; each scale is run once and
+    """Results of ``model`` within ``tolerances`` (SI) of a ``source`` times a scale; each scale is run once and
     kept in a file. The model has one number of modes for all scales (``with_modes``): otherwise the
     number of cases above a limit would jump."""
 
@@ -118,15 +171,17 @@ class Cases:
         tolerances: dict[str, float],
         cases: int,
         seed: int,
+        source: Source = source,
     ):
         self._study, self._folder, self._model, self._tolerances = study, folder, model, tolerances
-        self._cases, self._seed = cases, seed
+        self._cases, self._seed, self._source = cases, seed, source
         self._known: dict[float, np.ndarray] = {}
 
-    def source(self, scale: float) -> Derived:
+    def source(self, scale: float) -> Derived | Drawn:
         """The cases at a scale; a single case at scale zero, where all cases are equal."""
         sizes = {name: scale * size for name, size in self._tolerances.items()}
-        return source(self._model.scene, sizes, self._cases if scale > 0.0 else 1, self._seed)
+        count = self._cases if scale > 0.0 else 1
+        return self._source(self._model.scene, sizes, count, self._seed)
 
     def values(self, scale: float) -> np.ndarray:
         """The quantities (n,k) of ``answers.ALL``; NaN in cases that did not settle."""

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import At, Surrogate
+from tipoff.studies.commands.options import At, Surrogate, errors_file
 from tipoff.workspace.options import Rule, between
 
 HALVINGS = 3  # parts of the points, each half of the next, for convergence
@@ -18,11 +18,7 @@ class Options:
 
     vary: Annotated[
         str | None,
-        typer.Option(
-            metavar="NAME_OR_FILE",
-            help="Errors as of tipoff ensemble: a .toml file, or a name of the catalogue; default: "
-            "studies/sensitivity/tolerances.toml.",
-        ),
+        errors_file("studies/sensitivity/tolerances.toml"),
     ] = None
     points: Annotated[
         int,
