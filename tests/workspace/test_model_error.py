@@ -1,11 +1,14 @@
 """The error of a run by its model: exact parts, what it covers, and the range of a sensitive run."""
 
+import json
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import tipoff
+from tipoff.results import shown
 from tipoff.results.model_error import ModelError
 from tipoff.results.trajectory import Trajectory
 from tipoff.workspace import model_error
@@ -146,10 +149,19 @@ def test_a_sensitive_run_has_the_range_of_its_neighbours(walls):
     gap, modes = scene.contact.clearance, run.numerics["modes"]
     for step in (0.0, 1e-6, -1e-6):
         other = scene.replace({"contact.clearance": gap + step})
-        rate = np.degrees(
-            tipoff.run(other, compliance=walls, sensitivity=False, modes=modes).outcome.rate
-        )
+        outcome = tipoff.run(other, compliance=walls, sensitivity=False, modes=modes).outcome
+        rate, (x, y, z) = np.degrees(outcome.rate), outcome.velocity
+        across, off = math.hypot(y, z), math.degrees(math.acos(x / math.hypot(x, y, z)))
+        assert found.across_m_s[0] - 1e-9 <= across <= found.across_m_s[1] + 1e-9
+        assert found.off_axis_deg[0] - 1e-7 <= off <= found.off_axis_deg[1] + 1e-7
+        assert (np.array(found.low_m_s) <= np.array([x, y, z]) + 1e-9).all()
+        assert (np.array([x, y, z]) - 1e-9 <= np.array(found.high_m_s)).all()
         assert (np.array(found.low_deg_s) <= rate + 1e-9).all()
         assert (rate - 1e-9 <= np.array(found.high_deg_s)).all()
     assert max(np.subtract(found.high_deg_s, found.low_deg_s)) > 0.1
+    assert found.across_m_s[1] - found.across_m_s[0] > 1e-6
+    assert ModelError.of(json.loads(run.error.written())) == run.error
+    text = shown.facts(run)
+    assert all(text[name].count(" to ") >= 2 for name in ("velocity", "rate", "direction"))
+    assert f"{found.runs} runs" in text["error"]
     assert tipoff.run(TINY.condition("phi15"), compliance=walls).error.range is None

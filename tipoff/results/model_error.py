@@ -4,15 +4,22 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 
 class Range(NamedTuple):
-    """Lowest and highest rates (deg/s, about x, y, z) of a run and its neighbours, which have up to
-    1 um more or less of every clearance, or a tighter tolerance."""
+    """Lowest and highest values of a run and its neighbours, which have up to 1 um more or less of every
+    clearance, or a tighter tolerance."""
 
+    #: Rates about x, y, z.
     low_deg_s: tuple[float, ...]
     high_deg_s: tuple[float, ...]
+    #: Velocity along x, y, z.
+    low_m_s: tuple[float, ...]
+    high_m_s: tuple[float, ...]
+    #: Lowest and highest angle of the velocity to the x axis, and lateral velocity.
+    off_axis_deg: tuple[float, float]
+    across_m_s: tuple[float, float]
     #: Number of runs that have rates, and of those that have none.
     runs: int
     lost: int
@@ -51,13 +58,11 @@ class ModelError:
 
     @property
     def words(self) -> str:
-        """The error, or the range, as text."""
+        """The error, or whose range stands in its place, as text."""
         if self.range is not None:
-            spans = ", ".join(
-                f"{low:.3f} to {high:.3f}"
-                for low, high in zip(self.range.low_deg_s, self.range.high_deg_s)
+            return (
+                f"sensitive: the range is that of {self.range.runs} runs within 1 µm of clearance"
             )
-            return f"sensitive: {spans} deg/s over {self.range.runs} neighbours within 1 µm of clearance"
         if self.rate_deg_s is None:
             return f"not known: {self.not_known}"
         return f"{self.rate_deg_s:.2g} deg/s about each axis, mostly by the {self.largest}"
@@ -70,11 +75,14 @@ class ModelError:
     @classmethod
     def of(cls, found: Mapping) -> "ModelError":
         """The error that ``plain`` wrote."""
-        own = found["range"]
+        own: dict[str, Any] = {
+            name: tuple(value) if isinstance(value, list) else value
+            for name, value in (found["range"] or {}).items()
+        }
         return cls(
             parts_deg_s=found["parts_deg_s"],
             not_known=found["not_known"],
-            range=own and Range(**{name: own[name] for name in Range._fields}),
+            range=Range(**own) if own else None,
         )
 
     def written(self) -> str:

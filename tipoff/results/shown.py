@@ -1,7 +1,7 @@
 """A trajectory as text: one line, and the values of its summary and of its card."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +11,7 @@ from tipoff.faults import SceneError
 from tipoff.mechanics import instant
 from tipoff.mechanics.outcome import Outcome
 from tipoff.results import hand_calculation, unfinished
+from tipoff.results.model_error import Range
 from tipoff.scenes.scene import parse
 from tipoff.units import duration
 
@@ -49,18 +50,39 @@ def facts(run: "Trajectory") -> dict[str, str]:
         text |= _beyond("at exit", found, instant.EXIT)
     velocity, rate = instant.velocity(found, at), instant.rate(found, at)
     if rate is not None and velocity is not None:
-        text |= {
-            "velocity": f"{_vector(velocity)} m/s (x, y, z){_where(at)}",
-            "rate": f"{_rates(rate)} deg/s (x, y, z)",
-            "direction": _direction(velocity),
-        }
-    if rate is not None and run.error is not None:
-        text["error"] = run.error.words
+        own = run.error.range if run.error is not None else None
+        if own is not None:
+            text |= _spans(own, _where(at))
+        else:
+            text |= {
+                "velocity": f"{_vector(velocity)} m/s (x, y, z){_where(at)}",
+                "rate": f"{_rates(rate)} deg/s (x, y, z)",
+                "direction": _direction(velocity),
+            }
+        if run.error is not None:
+            text["error"] = run.error.words
     if at == instant.EXIT:
         text |= _beyond("burnt out", found, instant.SETTLED)
     return (
         text | _beside(run) | _checks(run.checks) | {"took": f"{run.cost.get('wall_s', 0.0):.3g} s"}
     )
+
+
+def _spans(found: Range, where: str) -> dict[str, str]:
+    """Velocity, rate and direction of a sensitive run."""
+
+    def of(low: Sequence[float], high: Sequence[float], digits: int) -> str:
+        return ", ".join(
+            f"{fixed(one, digits)} to {fixed(other, digits)}" for one, other in zip(low, high)
+        )
+
+    millimetres = [1e3 * end for end in found.across_m_s]
+    off, across = (f"{low:.3g} to {high:.3g}" for low, high in (found.off_axis_deg, millimetres))
+    return {
+        "velocity": f"{of(found.low_m_s, found.high_m_s, 4)} m/s (x, y, z){where}",
+        "rate": f"{of(found.low_deg_s, found.high_deg_s, 3)} deg/s (x, y, z)",
+        "direction": f"{off} deg off axis, {across} mm/s across",
+    }
 
 
 def _beyond(title: str, found: Outcome, at: str) -> dict[str, str]:

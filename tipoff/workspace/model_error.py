@@ -10,7 +10,7 @@
 
 The change by the lower degree is several times the error of the degree of the run, because the series
 converges. Modes above those of the rail compliance are quasi-static. ``results.model_error`` combines the
-parts. A sensitive run has the range of the rates of its neighbours instead: a change of its numerics moves
+parts. A sensitive run has the range of its neighbours instead: a change of its numerics moves
 it as far as a change of the clearance by less than anybody knows it. The error is stored beside the run,
 ``lowfi/*.error.json``.
 """
@@ -127,7 +127,7 @@ def _changed(run: Run) -> Iterator[tuple[str, Run | None]]:
 
 
 def _range(run: Run, nominal: Trajectory, moved: Disturbed) -> Range:
-    """Range of the rates over the run, the run at a tighter tolerance, and ``NEIGHBOURS`` with
+    """Range of velocity and rates over the run, the run at a tighter tolerance, and ``NEIGHBOURS`` with
     clearances evenly spaced within the change of ``moved``."""
     every, contact = [disturbed.tighter(run)], run.scene.contact
     if contact is not None and (most := moved.clearance_change_m) is not None:
@@ -138,11 +138,17 @@ def _range(run: Run, nominal: Trajectory, moved: Disturbed) -> Range:
         ]
     at = instant.of_outcome(nominal.outcome)
     runs = [nominal.outcome, *(execute(each).outcome for each in every)]
-    rates = [instant.rate(outcome, at) for outcome in runs]
-    known = np.degrees(np.array([rate for rate in rates if rate is not None]))
+    known = [outcome for outcome in runs if instant.rate(outcome, at) is not None]
+    rates = np.degrees(np.array([instant.rate(outcome, at) for outcome in known]))
+    velocity = np.array([instant.velocity(outcome, at) for outcome in known])
+    off, across = np.degrees(instant.off(velocity)), instant.lateral(velocity)
     return Range(
-        low_deg_s=tuple(known.min(axis=0).tolist()),
-        high_deg_s=tuple(known.max(axis=0).tolist()),
+        low_deg_s=tuple(rates.min(axis=0).tolist()),
+        high_deg_s=tuple(rates.max(axis=0).tolist()),
+        low_m_s=tuple(velocity.min(axis=0).tolist()),
+        high_m_s=tuple(velocity.max(axis=0).tolist()),
+        off_axis_deg=(float(off.min()), float(off.max())),
+        across_m_s=(float(across.min()), float(across.max())),
         runs=len(known),
-        lost=sum(rate is None for rate in rates),
+        lost=len(runs) - len(known),
     )

@@ -83,9 +83,10 @@ def rounded(
     return _fixed(value, min(_decimals(uncertainty), _decimals(least)), sign)
 
 
-def range_of(low: float, high: float) -> str:
-    """``low to high``, both rounded to a part of the width of the range; one number if they agree."""
-    ends = [rounded(end, SHARE * (high - low)) for end in (low, high)]
+def range_of(low: float, high: float, least: float = LEAST) -> str:
+    """``low to high``, both rounded to a part of the width of the range, without digits below ``least``; one
+    number if they agree."""
+    ends = [rounded(end, SHARE * (high - low), least) for end in (low, high)]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 

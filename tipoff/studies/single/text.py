@@ -8,12 +8,12 @@ from enum import IntEnum
 from tipoff.mechanics import instant
 from tipoff.mechanics.estimates import stop
 from tipoff.results.guides import Guide
-from tipoff.results.model_error import ModelError
+from tipoff.results.model_error import ModelError, Range
 from tipoff.scenes import launch
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.render.uncertain import number, range_of, rounded, uncertain
-from tipoff.studies.runs.results import ByHand, ConditionRun
+from tipoff.studies.runs.results import AtExit, ByHand, ConditionRun, Settled
 from tipoff.units import duration
 from tipoff.workspace import disturbed, model_error
 from tipoff.workspace.disturbed import Disturbed
@@ -118,13 +118,14 @@ def _answer(row: Single, every: bool) -> list[str]:
     where = f", {instant.where(row.at)}" if at_exit else ""
     text = [] if (at_exit or not every) and row.taken else _at_exit(row)
     if (found := row.taken) is not None:
+        own = row.error.range if row.error is not None else None
+        velocity = _vector(found.velocity_m_s) if own is None else _spans(own)
         text += [
-            f"  velocity      {_vector(found.velocity_m_s)} m/s (x, y, z){where}",
+            f"  velocity      {velocity} m/s (x, y, z){where}",
             *_rates(row, found.rate_deg_s, where),
             *([] if not every else _by_hand_at_exit(row)),
             *([] if at_exit or not every else _by_hand(row)),
-            f"  direction     {found.direction_error_deg:.4g} deg off axis, "
-            f"{1e3 * found.lateral_velocity_m_s:.4g} mm/s across",
+            f"  direction     {_direction(found) if own is None else _directions(own)}",
         ]
     if at_exit and every and row.settled is not None:
         rates = ", ".join(map(uncertain, row.settled.rate_deg_s))
@@ -134,6 +135,23 @@ def _answer(row: Single, every: bool) -> list[str]:
             *_by_hand(row),
         ]
     return text
+
+
+def _direction(found: Settled | AtExit) -> str:
+    off, across = found.direction_error_deg, 1e3 * found.lateral_velocity_m_s
+    return f"{off:.4g} deg off axis, {across:.4g} mm/s across"
+
+
+def _spans(found: Range) -> str:
+    """The velocity of a sensitive run."""
+    ends = zip(found.low_m_s, found.high_m_s)
+    return ", ".join(range_of(low, high, least=1e-4) for low, high in ends)
+
+
+def _directions(found: Range) -> str:
+    """The direction of a sensitive run."""
+    across = range_of(*(1e3 * end for end in found.across_m_s))
+    return f"{range_of(*found.off_axis_deg, least=1e-4)} deg off axis, {across} mm/s across"
 
 
 def _rates(row: Single, rate: Sequence[float], where: str) -> list[str]:
