@@ -56,7 +56,7 @@ def test_a_payload_that_stays_leaves_with_nothing():
     run = lowfi.run(scene(5e-3, 1e-3, mass=MASS, contact=PAPER_PAD), "springs")
     assert all(
         guide.leaves_s is None
-        for guide in guides.of(tipoff.parse(run.scene, bare_numbers_are_si=True), run)
+        for guide in guides.of_run(tipoff.parse(run.scene, bare_numbers_are_si=True), run)
     )
 
 

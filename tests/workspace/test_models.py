@@ -121,7 +121,7 @@ def test_options_of_another_model_are_bad_input(tmp_path, given, fault):
 
 def test_every_fault_of_the_options_is_listed():
     with pytest.raises(SceneError) as refused:
-        models.require(models.Options(FINITE_ELEMENTS, "c.toml", 4))
+        models.require(models.ModelOptions(FINITE_ELEMENTS, "c.toml", 4))
     assert [fault.source for fault in refused.value.faults] == ["--calibration", "--modes"]
 
 
@@ -191,7 +191,7 @@ def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monk
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: None)
     with pytest.raises(StudyError, match="phi15: misses: rate L2 2 x limit"):
         single.run(replace(study, only=("phi15",)), "phi15")
-    assert single.run(study, "phi15", models.Options(COMPLIANT)) == {"made": True}
+    assert single.run(study, "phi15", models.ModelOptions(COMPLIANT)) == {"made": True}
     kept.require_accepted(study, None, "h8")
 
 

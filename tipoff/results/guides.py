@@ -50,13 +50,13 @@ class Guide:
     moment_n_m: Vector | None = None
 
 
-def of(scene: Scene, run: Any) -> tuple[Guide, ...]:
+def of_run(scene: Scene, run: Any) -> tuple[Guide, ...]:
     """The guides of ``scene`` in its ``run``."""
     found = scene_model.built(scene)
     faces, centre = found.model.faces, np.array(found.model.payload.mass_centre)
     moved = relative_motion(run) if run.time.size > 1 else None
     rows = []
-    for number, guide in enumerate(guides.of(scene.pads)):
+    for number, guide in enumerate(guides.from_pads(scene.pads)):
         own = faces.guide == number
         place = faces.centre[own].mean(axis=0) + centre
         left = {} if moved is None else _left(run, moved, faces, own, found.model.rail_end)

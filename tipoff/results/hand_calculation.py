@@ -101,7 +101,7 @@ class Pinned(NamedTuple):
 
 def pinned(scene: Scene, run: "Trajectory") -> Pinned | str:
     """Rates at exit of a rocket on two buttons that turns about the rear one; or why it has none."""
-    buttons = [guide for guide in guides.of(scene, run) if guide.name.startswith("button")]
+    buttons = [guide for guide in guides.of_run(scene, run) if guide.name.startswith("button")]
     if len(buttons) != 2 or scene.platform is not None:
         return "the rocket has not two buttons on fixed rails"
     rear, front = sorted(buttons, key=lambda each: each.place_m[0])

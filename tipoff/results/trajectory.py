@@ -238,7 +238,7 @@ class Trajectory(Carded, Completed):
         """
         from tipoff.scenes.scene import parse
 
-        return guides.of(parse(self.scene, bare_numbers_are_si=True), self)
+        return guides.of_run(parse(self.scene, bare_numbers_are_si=True), self)
 
     def state_at_exit(self) -> hand_over.State:
         """State of the payload 0.1 ms after the exit, in the middle of the window at exit.

@@ -162,7 +162,7 @@ def _names(view: View, scene: Any, up: int, wall: float) -> None:
     for low, high in _mounts(scene)[:1]:
         place = view.point(0.5 * (low + high), lowest - 1.2 * wall)
         view.text((place[0], place[1] + 15.0), "mount (fixed)")
-    for guide in guides.of(scene.pads):
+    for guide in guides.from_pads(scene.pads):
         pad = scene.pads[guide.pads[0]]
         if guide.foot is None:
             continue

@@ -14,7 +14,7 @@ class Guide(NamedTuple):
     foot: tuple[float, float, float] | None  # m, from the nominal mass centre; None for a pad
 
 
-def of(pads: Sequence[PadTable]) -> list[Guide]:
+def from_pads(pads: Sequence[PadTable]) -> list[Guide]:
     """The guides of ``pads``, in the order of their first pads."""
     found: dict[tuple, list[int]] = {}
     for index, pad in enumerate(pads):
@@ -30,5 +30,5 @@ def of(pads: Sequence[PadTable]) -> list[Guide]:
 
 def numbers(pads: Sequence[PadTable]) -> list[int]:
     """Index of the guide of each of ``pads``."""
-    found = {pad: number for number, guide in enumerate(of(pads)) for pad in guide.pads}
+    found = {pad: number for number, guide in enumerate(from_pads(pads)) for pad in guide.pads}
     return [found[pad] for pad in range(len(pads))]

@@ -17,7 +17,7 @@ _OWNERS = {
 }
 
 
-class Options(NamedTuple):
+class ModelOptions(NamedTuple):
     """Options of a model."""
 
     name: str | None = None  # None: the default
@@ -44,7 +44,7 @@ class Options(NamedTuple):
         return self.name or COMPLIANT
 
 
-def require(options: Options, **others: object) -> None:
+def require(options: ModelOptions, **others: object) -> None:
     """Raise SceneError with every fault: an unknown name of a model, and options of another model.
     ``others`` are further options by the name of their parameter, None if not given."""
     if options.model not in MODELS:

@@ -18,7 +18,7 @@ from tipoff.studies.measured.launch.quantities import (
     LATERAL,
     SPEED,
     TIME,
-    Row,
+    ComparedValue,
     Stated,
     blurred,
     impacts,
@@ -146,7 +146,7 @@ class Flight:
     of the record, rad/s. ``lost``: runs of each model without an exit."""
 
     own: Flown
-    rows: list[Row]
+    rows: list[ComparedValue]
     band: np.ndarray
     count: int
     lost: dict[str, int]

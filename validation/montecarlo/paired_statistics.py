@@ -145,7 +145,7 @@ def _median(values: np.ndarray) -> float | None:
     return float(np.median(found)) if found.size else None
 
 
-def of(quantity: answers.Quantity, drawn: Draws, whole: Population) -> list[Statistic]:
+def statistics(quantity: answers.Quantity, drawn: Draws, whole: Population) -> list[Statistic]:
     """Mean, standard deviation and quantiles of ``quantity``, corrected."""
     both = both_settled(drawn, whole)
     values = quantity.of(whole.results)

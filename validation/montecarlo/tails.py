@@ -80,7 +80,7 @@ def run(study: Study, options: Options) -> Made[Tails]:
             contacts=tuple(paired_statistics.by_contacts(drawn, gate)),
             ladder=by_settings and paired_statistics.ladder(by_settings, drawn, gate),
             statistics=tuple(
-                row for item in RATES for row in paired_statistics.of(item, drawn, whole)
+                row for item in RATES for row in paired_statistics.statistics(item, drawn, whole)
             ),
             tails=tuple(
                 paired_statistics.tail(limit, drawn.reference, whole.results) for limit in limits

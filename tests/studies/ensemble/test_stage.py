@@ -153,7 +153,7 @@ def test_a_disturbed_run_that_does_not_settle_is_counted():
 
         return Held()
 
-    found = sensitivity.of(
+    found = sensitivity.compared(
         store(rates), {"clearance": store(moved), "tolerance": store(rates)}, 0.1
     )
     assert found.sensitive == 2

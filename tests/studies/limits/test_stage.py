@@ -204,7 +204,7 @@ def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
 
     def values_again():
         tolerances = {"misalignment": 0.01}
-        return within.Cases(study, limits.NAME, model, tolerances, 20, 3).values(0.5)
+        return within.CasesAtScale(study, limits.NAME, model, tolerances, 20, 3).values(0.5)
 
     before = set(folder.glob("*.nc"))
     values = values_again()
@@ -235,7 +235,7 @@ def searches(study, options):
 def test_the_advice_of_the_paper_stands_beside_its_set_alone(study, monkeypatch, vary, beside):
     """Beside the tolerances of a file stand those that it states, once each."""
     options = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=30, vary=vary)
-    monkeypatch.setattr(within.Cases, "values", lambda *_: np.zeros((30, len(answers.ALL))))
+    monkeypatch.setattr(within.CasesAtScale, "values", lambda *_: np.zeros((30, len(answers.ALL))))
     monkeypatch.setattr(limits.Search, "pairs", lambda *_: None)
     found = searches(study, options).all()
     first, *_, last = found.rows

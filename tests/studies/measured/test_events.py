@@ -87,7 +87,7 @@ def test_the_change_of_rate_does_not_know_of_the_catch():
     """To the last digit that of the log without it; that something else pushed is said."""
     after = [0.1, -0.05, 0.02]
     plain, longer = motion([0.0] * 3, after), caught(*motion([0.0] * 3, after))
-    first, second = (analysis.of(sheet(), _log(*drop), "test") for drop in (plain, longer))
+    first, second = (analysis.drop_of(sheet(), _log(*drop), "test") for drop in (plain, longer))
     np.testing.assert_allclose(second.reduced.change, first.reduced.change, atol=1e-12)
     assert any("taken for the catch" in note for note in second.notes)
     assert not any("catch" in note for note in first.notes)

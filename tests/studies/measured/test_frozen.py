@@ -113,9 +113,9 @@ def test_only_a_window_needs_the_channel(begin, is_refused):
     drop = drop._replace(frozen=(place,))
     if is_refused:
         with pytest.raises(SceneError, match="log.csv: z"):
-            analysis.of(synthetic.sheet(), drop, "log.toml")
+            analysis.drop_of(synthetic.sheet(), drop, "log.toml")
         return
-    found = analysis.of(synthetic.sheet(), drop, "log.toml")
+    found = analysis.drop_of(synthetic.sheet(), drop, "log.toml")
     assert any("frozen" in note for note in found.notes)
     assert found.doubtful.sum() == (drop.time >= begin).sum()
 

@@ -69,7 +69,7 @@ def test_the_whole_chain_from_raw_samples_covers_too():
     for seed in range(12):
         rng = np.random.default_rng([11, seed])
         start, change = 0.002 * rng.standard_normal(3), 0.15 * rng.standard_normal(3)
-        found = analysis.of(ask, log(sensor(rng), start, start + change, rng), "test")
+        found = analysis.drop_of(ask, log(sensor(rng), start, start + change, rng), "test")
         inside += (
             np.abs(found.reduced.change - change) <= found.reduced.factor * found.reduced.combined
         ).tolist()

@@ -16,7 +16,7 @@ from tipoff.mechanics import instant
 from tipoff.mechanics.outcome import Outcome
 from tipoff.scenes.names import NOMINAL
 from tipoff.studies.cli import app
-from tipoff.studies.limits.within import Cases
+from tipoff.studies.limits.within import CasesAtScale
 from tipoff.studies.measured import stage as measured
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
@@ -118,7 +118,9 @@ def test_cases_within_tolerances_have_the_rates_of_the_instant(tmp_path):
     study, model = Study(scene, tmp_path, Settings(workers=1)), Surrogate(scene, None, None, 0)
     largest = {}
     for at in ("exit", "settled"):
-        tried = Cases(study, "limits", model.watched(at), {"thrust_eccentricity": OFF}, 50, 1)
+        tried = CasesAtScale(
+            study, "limits", model.watched(at), {"thrust_eccentricity": OFF}, 50, 1
+        )
         largest[at] = abs(tried.rates(1.0)).max()
     assert largest["settled"] < TURNING * LASTS  # within three sigma
     assert 0.2 * largest["settled"] < largest["exit"] < 0.3 * largest["settled"]

@@ -151,11 +151,11 @@ def test_a_stretched_thrust_keeps_its_impulse():
 
 def test_sides_of_forces():
     time, force = np.linspace(0.0, 1.0, 101), np.zeros((101, 3))
-    assert sides.of(time, force) == (sides.NONE, sides.NONE)
+    assert sides.touched(time, force) == (sides.NONE, sides.NONE)
     force[10:20, 2], force[30:90, 0] = 5.0, 1.0
-    assert sides.of(time, force) == (2, 0)
+    assert sides.touched(time, force) == (2, 0)
     force[10:20, 1] = 6.0
-    assert sides.of(time, force)[0] == 1
+    assert sides.touched(time, force)[0] == 1
     walls = np.array([["a", "a", "b", "b"]] * 2)
     rate = np.zeros((2, 4, 3))
     rate[:, 2:, 1] = 3.0

@@ -158,7 +158,9 @@ def test_a_biased_surrogate_is_corrected_and_a_case_that_does_not_settle_is_abov
     whole = Population(
         {}, results(surrogate), "store", {}, Surrogate(free_flight.scene(), None, None, 0)
     )
-    rows = {row.statistic: row for row in paired_statistics.of(answers.RATES[1], both, whole)}
+    rows = {
+        row.statistic: row for row in paired_statistics.statistics(answers.RATES[1], both, whole)
+    }
     assert rows["mean"].value == pytest.approx(truth[:, 1].mean(), abs=0.02)
     assert rows["mean"].surrogate == pytest.approx(truth[:, 1].mean() * 1.2 + 0.5)
     assert rows["standard deviation"].value == pytest.approx(truth[:, 1].std(), rel=0.01)

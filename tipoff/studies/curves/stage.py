@@ -103,7 +103,7 @@ def _require(study: Study, options: Options) -> None:
     if options.condition:
         study.condition(options.condition)
     for model in options.model or ():
-        known.require(known.Options(model))
+        known.require(known.ModelOptions(model))
     surrogates = {*(options.model or ())} - {FINITE_ELEMENTS}
     if options.calibration and options.model and len(surrogates) != 1:
         given = ", ".join(options.model)

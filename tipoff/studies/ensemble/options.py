@@ -112,8 +112,8 @@ class Options:
             raise SceneError(faults)
 
     @property
-    def chosen(self) -> "models.Options":
+    def chosen(self) -> "models.ModelOptions":
         """The options of the model."""
         from tipoff.workspace import models
 
-        return models.Options(self.model, self.calibration, self.modes)
+        return models.ModelOptions(self.model, self.calibration, self.modes)

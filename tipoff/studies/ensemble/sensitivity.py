@@ -43,7 +43,7 @@ class Sensitivity:
     by: dict[str, Change]
 
 
-def of(store: Store, disturbed: Mapping[str, Store], limit: float) -> Sensitivity:
+def compared(store: Store, disturbed: Mapping[str, Store], limit: float) -> Sensitivity:
     """The sensitivity of a whole ``store``, from the stores of its twins by cause; ``limit``
     (deg/s)."""
     settled = np.isfinite(store.column("lateral_velocity"))

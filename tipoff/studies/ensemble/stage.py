@@ -189,7 +189,7 @@ def run(study: Study, options: Options) -> Ran:
     memory = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     calibrated = options.calibration is not None
     found = Ran(
-        **vars(summary.of(ensemble, store, calibrated, at, limits)),
+        **vars(summary.summarized(ensemble, store, calibrated, at, limits)),
         scene=study.scene.name,
         quantities=words.QUANTITIES,
         implausible=[*implausible.of_all_conditions(study.scene), *population.doubtful(ensemble)],
@@ -279,7 +279,7 @@ def _sensitivity(
         words_ = sensitivity.CAUSES[cause]
         costs[cause] = _filled(study, twin, disturbed[cause], options, board, words_)
         twins.add(store, cause, twin, disturbed[cause])
-    return Sensitive(**vars(sensitivity.of(store, disturbed, _limit(study))), run=costs)
+    return Sensitive(**vars(sensitivity.compared(store, disturbed, _limit(study))), run=costs)
 
 
 def _halves(

@@ -94,7 +94,7 @@ class Statistics:
     failed: list[str]
 
 
-def of(
+def summarized(
     ensemble: Ensemble,
     store: Store,
     calibrated: bool,

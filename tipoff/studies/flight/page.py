@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 
-from tipoff.studies.flight.results import Cases, Condition, Curves, Flight, Orbit
+from tipoff.studies.flight.results import Condition, Curves, Flight, ManyFlights, Orbit
 from tipoff.studies.flight.summary import BY_NAME
 from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import Chart, Line, Panel, marks
@@ -182,7 +182,7 @@ def _clearance(curves: Sequence[Curves]) -> Chart:
     return Chart("flight-clearance", [panel], height=300)
 
 
-def _scatter(many: Cases) -> Chart:
+def _scatter(many: ManyFlights) -> Chart:
     y, z, orbital_y, orbital_z = zip(*many.points_m)
     errors = [math.hypot(a - c, b - d) for a, b, c, d in many.points_m]
     shares = [
@@ -201,7 +201,7 @@ def _scatter(many: Cases) -> Chart:
 
 
 def _exceeded(
-    many: Cases, name: str, values: list[float], words: str, colour: str, dash: str
+    many: ManyFlights, name: str, values: list[float], words: str, colour: str, dash: str
 ) -> list[Line]:
     """Share of cases above each value, and bounds of the quantiles."""
     above = [100.0 * (1.0 - (index + 1) / len(values)) for index in range(len(values))]
@@ -234,7 +234,7 @@ def remarks(flight: Orbit, limit_open: int) -> list[str]:
     return [line for line, holds in lines.items() if holds]
 
 
-def _touching(many: Cases) -> str:
+def _touching(many: ManyFlights) -> str:
     share = many.touch
     if share is None:
         return ""

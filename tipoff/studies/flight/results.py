@@ -66,7 +66,7 @@ class Share:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cases:
+class ManyFlights:
     """Many cases: numbers; quantiles by quantity and the method of their ``bounds``; cases that do
     not show whether the pointing limit is reached, that ``touch`` the platform again, and that
     never reach the target (None if not known for any case); points (y, z, and without errors) for
@@ -95,5 +95,5 @@ class Flight(Answering):
     flight: Orbit
     conditions: tuple[Condition, ...]
     curves: list[Curves]  # a list does not go to a CSV file
-    cases: Cases
+    cases: ManyFlights
     data: str

@@ -13,7 +13,7 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty, Varied
 from tipoff.studies.flight import bodies
 from tipoff.studies.flight.flown import Flown
-from tipoff.studies.flight.results import Cases, Orbit, Share
+from tipoff.studies.flight.results import ManyFlights, Orbit, Share
 from tipoff.studies.populations import answers, exceedance
 from tipoff.studies.populations.answers import Left, Quantity
 from tipoff.studies.populations.population import Population
@@ -104,7 +104,7 @@ def _finite(value: float | None) -> float | None:
     return None if value is None or not np.isfinite(value) else float(value)
 
 
-def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> Cases:
+def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> ManyFlights:
     """The distributions over the flights of a population."""
     independent = uncertainty.sampling == "random"
     known, reached, settled = (
@@ -123,7 +123,7 @@ def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> Cas
         else f"none: {uncertainty.sampling} samples are not independent"
     )
     is_open = np.isnan(found.limit)
-    return Cases(
+    return ManyFlights(
         counts=population.counts,
         settled=int(settled.sum()),
         store=population.store,

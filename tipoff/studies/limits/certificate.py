@@ -17,7 +17,7 @@ from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.scene import Scene
 from tipoff.studies.limits.options import Options
-from tipoff.studies.limits.within import Cases, Source, source
+from tipoff.studies.limits.within import CasesAtScale, Source, source
 from tipoff.studies.populations import draws, exceedance, stratified
 from tipoff.studies.populations.draws import Lost
 from tipoff.studies.populations.exceedance import Limit
@@ -74,7 +74,7 @@ def made(
     """The bound from ``options.certify`` runs of the reference, among ten times the ``cases`` of the
     search."""
     assert options.certify is not None
-    tried = Cases(
+    tried = CasesAtScale(
         study,
         "limits",
         within.model,

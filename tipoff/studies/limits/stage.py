@@ -38,7 +38,7 @@ from tipoff.studies.limits.results import (
     Pair,
 )
 from tipoff.studies.limits.search import Found
-from tipoff.studies.limits.within import ADVISED, REACH, TOGETHER, Cases, Factor
+from tipoff.studies.limits.within import ADVISED, REACH, TOGETHER, CasesAtScale, Factor
 from tipoff.studies.populations import answers, exceedance, population, spread
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
@@ -235,12 +235,14 @@ class Search:
         checked_within = certificate.Within(self.model, reference.scene, sizes, self.inputs.source)
         return certificate.made(self.study, self.options, self.limits, self.cases, checked_within)
 
-    def _of(self, tolerances: dict[str, float], model: Surrogate | None = None) -> Cases:
+    def _of(self, tolerances: dict[str, float], model: Surrogate | None = None) -> CasesAtScale:
         seed = self.options.seed
         source = self.inputs.source
-        return Cases(self.study, NAME, model or self.model, tolerances, self.cases, seed, source)
+        return CasesAtScale(
+            self.study, NAME, model or self.model, tolerances, self.cases, seed, source
+        )
 
-    def _above(self, cases: Cases, limits: list[Limit]) -> Callable[[float], int]:
+    def _above(self, cases: CasesAtScale, limits: list[Limit]) -> Callable[[float], int]:
         def count(scale: float) -> int:
             self.evaluations += 1
             self.report(self.evaluations / self.expected)
@@ -251,7 +253,9 @@ class Search:
     def _search(self, tolerances: dict[str, float]) -> Found:
         return search.largest(self._above(self._of(tolerances), self.limits), self.allowed)
 
-    def _near(self, cases: Cases, limits: list[Limit], start: float, most: float = 1.0) -> Found:
+    def _near(
+        self, cases: CasesAtScale, limits: list[Limit], start: float, most: float = 1.0
+    ) -> Found:
         if any(limit.deg_s <= 0.0 for limit in limits):
             return Found(search.LOST)
         return search.near(self._above(cases, limits), self.allowed, start, most)

@@ -158,7 +158,7 @@ def with_modes(model: Surrogate, drawn: Derived | Drawn) -> Surrogate:
     return model.with_modes_of(pilot.settled(model.ensemble(drawn)))
 
 
-class Cases:
+class CasesAtScale:
     """Results of ``model`` within ``tolerances`` (SI) of a ``source`` times a scale; each scale is run once and
     kept in a file. The model has one number of modes for all scales (``with_modes``): otherwise the
     number of cases above a limit would jump."""

@@ -35,10 +35,10 @@ def analyse(path: str | Path) -> Drop:
     """The whole analysis of one log. Raises SceneError listing every fault."""
     sheet, log = read(path)
     assert isinstance(sheet, Sheet)  # of a drop test
-    return of(sheet, log, str(path))
+    return drop_of(sheet, log, str(path))
 
 
-def of(sheet: Sheet, log: Log, source: str) -> Drop:
+def drop_of(sheet: Sheet, log: Log, source: str) -> Drop:
     """The same for a log that is already read."""
     samples = calibrated(sheet, log)
     smooth = filtered(samples.rate, sheet.channel_class, log.interval)

@@ -8,7 +8,13 @@ import numpy as np
 from tipoff.studies.measured import judgement, power
 from tipoff.studies.measured.judgement import MAGNITUDES
 from tipoff.studies.measured.launch import page as launches
-from tipoff.studies.measured.results import Cases, Compared, Launch, Measurements, Row
+from tipoff.studies.measured.results import (
+    Compared,
+    JudgedTest,
+    Launch,
+    Measurements,
+    SimulatedCases,
+)
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.render.chart import Chart, Line, Panel, marks
 from tipoff.studies.render.document import Bullets, Figure, Fold, Notice, Part
@@ -73,7 +79,7 @@ def _heads(found: Measurements) -> list[Part]:
     return [*parts, *([Notice(_SIMULATED)] if any(row.simulated for row in _all(found)) else [])]
 
 
-def _all(found: Measurements) -> list[Row | Launch]:
+def _all(found: Measurements) -> list[JudgedTest | Launch]:
     return [*found.tests, *found.launches]
 
 
@@ -105,7 +111,7 @@ def _of_tests(found: Measurements) -> tuple[Figure, Figure]:
     )
 
 
-def _rates(row: Row) -> list[Panel]:
+def _rates(row: JudgedTest) -> list[Panel]:
     ignition = row.ignition_s
     time, rate = np.array(row.curve.time_s), np.array(row.curve.rate_deg_s)
     windows = [(begin - ignition, end - ignition) for begin, end in row.windows_s.values()]
@@ -188,8 +194,8 @@ def _tests(found: Compared, places: Sequence[tuple]) -> list[Line]:
     return lines
 
 
-def _changes(tests: Sequence[Row]) -> Table:
-    def change(place: int) -> Callable[[Row], str]:
+def _changes(tests: Sequence[JudgedTest]) -> Table:
+    def change(place: int) -> Callable[[JudgedTest], str]:
         return lambda row: (
             f"{row.change_deg_s[place]:+.3f} ± {row.expanded_uncertainty_deg_s[place]:.3f}"
         )
@@ -208,7 +214,7 @@ def _changes(tests: Sequence[Row]) -> Table:
     )
 
 
-def _rest(row: Row) -> str:
+def _rest(row: JudgedTest) -> str:
     return f"{row.rest_deg_s:.2g}, {'limit' if row.rest_kept else 'ABOVE'} {row.rest_limit_deg_s:g}"
 
 
@@ -259,7 +265,7 @@ def _place(share: float, p: float) -> str:
     return f"{100.0 * share:.1f} ({p:.3f})"
 
 
-def _cases(cases: Cases) -> Table:
+def _cases(cases: SimulatedCases) -> Table:
     shares = [row.share for row in cases.quantiles[answers.TOTAL_RATE.name]]
     rows = [
         (f"{item.label} ({item.unit})", *map(estimate, cases.quantiles[item.name]))
@@ -274,7 +280,7 @@ def _cases(cases: Cases) -> Table:
     return Table(heads, rows, notes=(note,), dense=True)
 
 
-def _budgets(tests: Sequence[Row]) -> Fold:
+def _budgets(tests: Sequence[JudgedTest]) -> Fold:
     rows = [
         (
             row.test,

@@ -77,7 +77,7 @@ class Measured:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row(Standing, Measured):
+class JudgedTest(Standing, Measured):
     """A drop test and its place; whether each component is inside the range of the cases."""
 
     inside_range: tuple[bool, bool, bool]
@@ -122,7 +122,7 @@ class Power:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cases:
+class SimulatedCases:
     """The simulated cases: their numbers, quantiles of ``answers.ALL`` by name, the first rates."""
 
     asked: int
@@ -140,11 +140,11 @@ class Compared:
     """Drop tests compared with cases; empty without a drop test."""
 
     simulated_logs: bool
-    tests: tuple[Row, ...] = ()
+    tests: tuple[JudgedTest, ...] = ()
     together: Together | None = None
     regions: tuple[Region, ...] = ()
     power: tuple[Power, ...] = ()
-    cases: Cases | None = None
+    cases: SimulatedCases | None = None
 
 
 @dataclass(frozen=True)

@@ -30,13 +30,13 @@ from tipoff.studies.measured.log import read
 from tipoff.studies.measured.options import Options
 from tipoff.studies.measured.reduction import COVERAGE
 from tipoff.studies.measured.results import (
-    Cases,
     Compared,
     Comparison,
     Curve,
+    JudgedTest,
     Launch,
     Measurements,
-    Row,
+    SimulatedCases,
     Together,
 )
 from tipoff.studies.populations import answers, population, spread
@@ -155,7 +155,7 @@ def analysed(paths: Sequence[Path], scene: Scene) -> tuple[list[Drop], list[Laun
         try:
             sheet_, log = read(path)
             if isinstance(sheet_, sheet.Sheet):
-                drops.append(analysis.of(sheet_, log, str(path))._replace(name=name))
+                drops.append(analysis.drop_of(sheet_, log, str(path))._replace(name=name))
             else:
                 launches.append(launch.analyse(sheet_, log, scene, str(path))._replace(name=name))
         except SceneError as error:
@@ -199,7 +199,7 @@ def result(
         together=_together(tests, rates),
         regions=tuple(judgement.region(rates, pair) for pair in combinations(range(3), 2)),
         power=power.table(rates, len(tests)),
-        cases=Cases(
+        cases=SimulatedCases(
             **cases.counts,
             settled=len(rates),
             quantiles={
@@ -212,12 +212,12 @@ def result(
     )
 
 
-def _row(number: int, drop: Drop, simulated: np.ndarray, doubts: list[str]) -> Row:
+def _row(number: int, drop: Drop, simulated: np.ndarray, doubts: list[str]) -> JudgedTest:
     """One test among simulated rates (n,3) deg/s."""
     found, events, sheet_, windows = drop.reduced, drop.events, drop.sheet, drop.sheet.windows
     change, uncertainty = np.degrees(found.change), np.degrees(found.combined)
     within = (simulated.min(axis=0) <= change) & (change <= simulated.max(axis=0))
-    return Row(
+    return JudgedTest(
         **vars(judgement.standing(simulated, change, uncertainty, number)),
         test=drop.name,
         simulated=sheet_.simulated,
@@ -260,7 +260,7 @@ def _curve(drop: Drop) -> Curve:
     return Curve(_plain(time[keep].round(6)), _plain(np.degrees(drop.filtered[keep]).round(4)))
 
 
-def _together(tests: Sequence[Row], simulated: np.ndarray) -> Together:
+def _together(tests: Sequence[JudgedTest], simulated: np.ndarray) -> Together:
     """p by distance and by spread, and the smaller after Bonferroni."""
     changes = np.array([row.change_deg_s for row in tests])
     uncertainty = np.array([row.standard_uncertainty_deg_s for row in tests])

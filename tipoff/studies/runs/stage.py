@@ -147,6 +147,6 @@ def _beside(request: Run, found: Trajectory) -> dict[str, Any]:
         "by_hand_at_exit": None
         if isinstance(pinned, str)
         else ByHand(_vector(map(math.degrees, pinned.rate)), pinned.words),
-        "guides": guides.of(request.scene, found),
+        "guides": guides.of_run(request.scene, found),
         "by_hand": hand and ByHand(_vector(map(math.degrees, hand.rate)), hand.words),
     }

@@ -132,7 +132,7 @@ def run(
         flags = {"--accuracy": accuracy, "--budget": budget, **switches}
         expected = "none: --all runs each condition with the defaults of its model"
         without(own | usual | rest | flags, expected)
-        models.require(models.Options(model), checkpoint_every=checkpoint_every)
+        models.require(models.ModelOptions(model), checkpoint_every=checkpoint_every)
         fidelity = "highfi" if model == FINITE_ELEMENTS else "lowfi"
         every = request.study(checkpoint_every=checkpoint_every)
         made = stage.run(every, fidelity)
@@ -142,7 +142,7 @@ def run(
         chosen = {"--accuracy": accuracy, "--budget": budget}
         expected = "none: --range is that of compliant contact with its defaults"
         without(own | chosen | usual, expected)
-    options = models.Options(model, calibration, modes, degree, cells)
+    options = models.ModelOptions(model, calibration, modes, degree, cells)
     detail = text.Detail.ALL if explain else text.Detail.ANSWER
     if request.json_:
         without({"--explain": explain or None}, "none: --json has all")

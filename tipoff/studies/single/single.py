@@ -38,7 +38,7 @@ _COMPARED = (
 def run(
     study: Study,
     condition: str,
-    options: models.Options = models.Options(),
+    options: models.ModelOptions = models.ModelOptions(),
     detail: Detail = Detail.ANSWER,
 ) -> dict:
     """The result of the run, as in the result file of a stage; prints it in ``detail``.

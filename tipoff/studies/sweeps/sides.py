@@ -51,7 +51,7 @@ def found(
             model.scene.replace(row), model.name, numerics=numerics, compliance=model.compliance
         )
         rate = instant.rate(run.outcome, model.instant.at) or [np.nan] * 3
-        return *of(run.time, np.linalg.norm(run.pad_force, axis=2)), rate
+        return *touched(run.time, np.linalg.norm(run.pad_force, axis=2)), rate
 
     seen = []
     with ThreadPoolExecutor(workers) as pool:
@@ -61,7 +61,7 @@ def found(
     return Sides(*map(np.array, zip(*seen)))
 
 
-def of(time: np.ndarray, force: np.ndarray) -> tuple[int, int]:
+def touched(time: np.ndarray, force: np.ndarray) -> tuple[int, int]:
     """First and most loaded face from forces (t,f) in N at ``time`` (t,) s."""
     touched = force > 0.0
     if not touched.any():

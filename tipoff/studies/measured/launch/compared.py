@@ -39,7 +39,7 @@ def _thrust(own: Launched, found: Predicted) -> str:
     return "time_s,force_N\n" + "".join(rows)
 
 
-def _comparison(test: str, row: quantities.Row) -> Comparison:
+def _comparison(test: str, row: quantities.ComparedValue) -> Comparison:
     (ends,) = row.ranges.values()
     return Comparison(
         test=test,

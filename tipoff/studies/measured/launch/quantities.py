@@ -42,7 +42,7 @@ class Stated(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Row:
+class ComparedValue:
     """One comparison: the ``measured`` value with its uncertainties as ``Stated``, the predicted range (2.5, 50,
     97.5 %) of each model, the share of values of the first model below the measured one, and whether the
     measured one is inside the 95 % range of each model."""
@@ -134,7 +134,7 @@ def blurred(
 def table(
     stated: Mapping[str, Stated],
     found: Mapping[str, Sequence[Mapping[str, float]]],
-) -> list[Row]:
+) -> list[ComparedValue]:
     """Every comparison of the ``stated`` measured values with those ``found`` by each model."""
     rows = []
     for name, (value, uncertainty, expanded) in stated.items():
@@ -143,7 +143,9 @@ def table(
         inside = {model: ends[0] <= value <= ends[2] for model, ends in ranges.items()}
         quantity, _, unit = name.rpartition(", ")
         rank = share_below(next(iter(values.values())), value)
-        rows.append(Row(quantity, unit, value, uncertainty, expanded, ranges, rank, inside))
+        rows.append(
+            ComparedValue(quantity, unit, value, uncertainty, expanded, ranges, rank, inside)
+        )
     return rows
 
 
