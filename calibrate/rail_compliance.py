@@ -21,6 +21,7 @@ from tipoff.remaining import Remaining
 from tipoff.scenes import scene_model
 from tipoff.scenes.rail_compliance import digest
 from tipoff.scenes.scene import Scene
+from tipoff.scenes.studies import ELEMENT_SIZE
 from tipoff.scenes.studies import element_size as own_size
 
 _SAID: set[Path] = set()  # files whose uncertainty was reported
@@ -43,7 +44,7 @@ def compliance(
     from tipoff.highfi import compliance as statics  # slow to load
     from tipoff.highfi import discretisation
 
-    size = element_size or own_size(scene.studies)
+    size = element_size or own_size(scene.studies, scene.rail.length)
     rails = statics.rails(scene, size)
     found = statics.condense(scene, size, held=rails, degree=degree)
     found = discretisation.stated(scene, size, found, rails)
@@ -69,7 +70,7 @@ def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | N
         return compliance(scene, element_size).rigid()
     from tipoff.highfi import compliance as statics  # slow to load
 
-    return statics.walls(scene, element_size or own_size(scene.studies))
+    return statics.walls(scene, element_size or own_size(scene.studies, scene.rail.length))
 
 
 def kept(
@@ -119,14 +120,23 @@ def _made(
     from tipoff.highfi.rail import places  # slow to load
 
     say(
-        f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, then "
-        f"{500 * element_size:g} mm for its uncertainty; takes seconds to minutes"
+        f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements"
+        f"{_why(scene, element_size)}, then {500 * element_size:g} mm for its uncertainty; takes "
+        f"seconds to minutes"
     )
     began = time.perf_counter()
     with places.progress_to(_Waiting(say, time.perf_counter)):
         found = compliance(scene, element_size, degree)
     say(f"  computed in {time.perf_counter() - began:.3g} s, stored in {path}")
     return found
+
+
+def _why(scene: Scene, element_size: float) -> str:
+    """Why elements are larger than usual."""
+    length, stated = scene.rail.length, scene.studies and scene.studies.element_size
+    if stated or element_size != own_size(None, length) or element_size == ELEMENT_SIZE:
+        return ""
+    return f" (the default for a rail of {length:.3g} m)"
 
 
 class _Waiting:

@@ -156,7 +156,7 @@ def run(
         sensitivity=sensitivity,
     )
     if model == FINITE_ELEMENTS:
-        given = {"element_size": studies.element_size(scene.studies)} | numerics
+        given = {"element_size": studies.element_size(scene.studies, scene.rail.length)} | numerics
         sizes = arguments.numerics(highfi.Numerics, given, lowfi.Numerics, model)
         with kernel_marks.first_use(Run("highfi", scene.name, scene, sizes)):
             return highfi.run(scene, sizes, progress)

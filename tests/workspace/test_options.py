@@ -7,8 +7,10 @@ import pytest
 import typer
 
 from tipoff import scenes
+from tipoff.calibration import rail_compliance
 from tipoff.faults import SceneError
 from tipoff.mechanics.rail_compliance import MODES
+from tipoff.scenes import studies
 from tipoff.workspace import settings
 from tipoff.workspace.options import between, require
 from tipoff.workspace.stage import csv_of
@@ -79,3 +81,32 @@ def test_a_scene_states_the_modes_of_the_compared_surrogate():
     assert settings.defaults(scene.replace({"studies.rail_modes": MODES})).rail_modes == MODES
     with pytest.raises(SceneError, match="studies.rail_modes"):
         scene.replace({"studies.rail_modes": MODES + 1})
+
+
+def test_elements_grow_with_the_rail_unless_the_scene_states_them(tmp_path):
+    """All rails of the catalogue are too short for that. The message on a long rail says why; control:
+    with a stated size it does not."""
+    for name in scenes.catalog():
+        own, found = scenes.load(name), settings.defaults(name).element_size
+        stated = own.studies and own.studies.element_size
+        assert found == (stated or 2e-3) and studies.usual_size(own.rail.length) == 2e-3
+
+    def said(scene) -> str:
+        lines: list[str] = []
+        with pytest.MonkeyPatch.context() as patch, pytest.raises(MemoryError):
+            patch.setattr(rail_compliance, "compliance", full)
+            rail_compliance.kept(
+                scene, tmp_path, settings.defaults(scene).element_size, lines.append
+            )
+        return lines[0]
+
+    def full(*_given):
+        raise MemoryError
+
+    stated = scenes.load("rocket_rail").replace({"rail.end": 10.28})
+    assert settings.defaults(stated).element_size == 5e-3
+    assert "5 mm elements, then 2.5 mm" in said(stated)
+    for end, size in ((1.37, 2e-3), (3.27, 10e-3), (10.28, 20e-3)):
+        scene = stated.replace({"rail.end": end, "studies.element_size": None})
+        assert settings.defaults(scene).element_size == size
+    assert "20 mm elements (the default for a rail of 11 m), then 10 mm" in said(scene)

@@ -81,6 +81,11 @@ class RailBase(Table):
 
     _forward = field_validator("end")(_beyond_start)
 
+    @property
+    def length(self) -> float:
+        """Length (m) of the walls."""
+        return self.end - self.start
+
     def contents(self) -> dict[str, str]:
         """The keys that name files, each with the digest of the content of its file."""
         return {}

@@ -78,7 +78,8 @@ def compliance(scene: Scene, element_size: float | None, degree: int) -> RailCom
     default those of the reference. Raises SceneError and MeshError."""
     from tipoff.calibration import rail_compliance  # slow to load
 
-    size = studies.element_size(scene.studies) if element_size is None else element_size
+    usual = studies.element_size(scene.studies, scene.rail.length)
+    size = usual if element_size is None else element_size
     return rail_compliance.kept(scene, sources.cache_folder() / "compliance", size, say, degree)
 
 

@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 
 from tipoff.files import content_hash
 from tipoff.scenes.scene import Scene, load
-from tipoff.scenes.studies import ELEMENT_SIZE
+from tipoff.scenes.studies import ELEMENT_SIZE, element_size
 
 _BESIDE_RESULTS = ("workers", "checkpoint_every", "resume")  # these do not change a result
 
@@ -67,5 +67,6 @@ class Settings:
 def defaults(scene: Scene | str) -> Settings:
     """Settings of a ``scene``, or of the scene with this name in the catalogue: those of its
     ``[studies]``, else the defaults. The name itself has no effect."""
-    stated = (load(scene) if isinstance(scene, str) else scene).studies
-    return Settings(**(stated.model_dump(exclude_none=True, exclude={"errors"}) if stated else {}))
+    found = load(scene) if isinstance(scene, str) else scene
+    own = found.studies.model_dump(exclude_none=True, exclude={"errors"}) if found.studies else {}
+    return Settings(**{"element_size": element_size(None, found.rail.length)} | own)

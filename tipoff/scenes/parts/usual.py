@@ -2,6 +2,8 @@
 
 import math
 
+from tipoff.scenes import studies
+
 MOUNT, SPAN = 0.06, 1.5  # m: length of a clamp, and at most between two of them
 
 
@@ -16,5 +18,5 @@ def mounts(rail: float) -> list[tuple[float, float]]:
 
 
 def element_size(rail: float) -> str:
-    """Elements along a ``rail`` (m)."""
-    return "5 mm" if rail <= 2.0 else "10 mm" if rail <= 4.0 else "20 mm"
+    """Elements along a ``rail`` (m), which has a profile: coarser ones do not change its section."""
+    return f"{1e3 * max(studies.usual_size(rail), 5e-3):g} mm"
