@@ -103,7 +103,8 @@ def test_every_toml_block_is_a_scene_or_a_file_of_distributions(page, tmp_path):
             file.write_text(head + text)
             uncertainty.load(file, scene)
             continue
-        head = "" if "extends" in table else 'extends = "reference"\n'
+        whole = "extends" in table or "deployer" in table
+        head = "" if whole else 'extends = "reference"\n'
         head += "" if "name" in table else f'name = "block{number}"\n'
         file.write_text(head + text)
         scene = tipoff.load(file)

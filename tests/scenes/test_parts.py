@@ -158,6 +158,7 @@ def test_parts_written_out_are_the_same_scene_by_hand():
             {"payload": {"mass": "1 kg", "length": "1 m"}},
             ["payload.mass_centre", "payload.diameter"],
         ),
+        ({"payload": {**ROCKET["payload"], "mass": "4 m"}}, ["payload.mass"]),
         ({"gravity": {"inclination": "84 deg", "x": "1 m/s**2"}}, ["gravity.x"]),
         ({"origin": "middle"}, ["origin"]),
     ],
@@ -168,6 +169,7 @@ def test_every_fault_of_a_part_is_listed(tables, keys):
     found = [fault.key for fault in caught.value.faults]
     assert set(keys) <= set(found), found
     assert len(found) == len(set(found))
+    assert "payload.inertia" not in found or "payload.diameter" in found
 
 
 def test_a_mass_centre_without_an_origin_is_refused():

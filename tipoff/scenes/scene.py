@@ -54,6 +54,7 @@ from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.parts import expansion
 from tipoff.scenes.parts.body import Origin
 from tipoff.scenes.parts.buttons import ButtonTable
+from tipoff.scenes.parts.deployer import DeployerTable
 from tipoff.scenes.rail import RailTable
 from tipoff.scenes.studies import StudiesTable
 from tipoff.scenes.table import MOST, Table, at_least_one, is_absent, limited
@@ -86,6 +87,8 @@ class Scene(inputs.Inputs, shown.Shown, launch.Timed, Table):
     payload: PayloadTable
     #: Rail buttons in the slot of a T-slot rail, in place of pads.
     buttons: Annotated[tuple[ButtonTable, ...], limited] | None = Field(None, exclude=True)
+    #: A CubeSat in its deployer, in place of pads, rail and what else follows from its form.
+    deployer: DeployerTable | None = Field(None, exclude=True)
     #: The blocks on the payload that slide along the rail.
     pads: Annotated[tuple[PadTable, ...], limited, AfterValidator(at_least_one)]
     #: The elastic guide: the built-in L section, a mesh file or a CAD solid.

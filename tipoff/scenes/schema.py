@@ -43,6 +43,7 @@ def schema() -> dict:
         if field.is_required() and name not in ("name", "pads")  # without a name, that of the file
     ]
     whole = [{"required": [*required, pads]} for pads in ("pads", "buttons")]
+    whole.append({"required": [*(name for name in required if name != "rail"), "deployer"]})
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "tipoff scene",

@@ -23,6 +23,7 @@ from tipoff.scenes.table import Table
 _TABLES = {
     "payload",
     "buttons",
+    "deployer",
     "pads",
     "rail",
     "thrust",
@@ -100,7 +101,9 @@ class Variations:
             for name, table in self.scene._raw.items()
             if with_parts or name in changed
         }
-        if ("pads" in changed and "buttons" in raw) or keys.apply_all(raw, row, Scene):
+        if ("pads" in changed and expansion.gives_pads(self.scene._raw)) or keys.apply_all(
+            raw, row, Scene
+        ):
             return None
         expanded = raw
         if with_parts:

@@ -88,7 +88,7 @@ def scenes(
             "--show",
             metavar="NAME_OR_FILE",
             help="Print the file of this scene, or of these errors, for a changed copy; of a file of yours, all "
-            "that follows from its buttons, its origin and its body, as if written by hand.",
+            "that follows from its buttons or its deployer, its origin and its body, as if written by hand.",
         ),
     ] = None,
     draw: Annotated[

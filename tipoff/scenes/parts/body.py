@@ -76,7 +76,10 @@ def _inertia(made: Made) -> None:
         size = [text(each) for each in (length, diameter, diameter)]
         made.put("payload.size", size, "from length and diameter of the payload")
     mass = number(payload.get("mass"), "kg", made.bare)
-    if "inertia" in payload or mass is None:
+    if "inertia" in payload:
+        return
+    if mass is None:
+        made.derived["payload.inertia"] = ""
         return
     across = mass * (0.75 * diameter**2 + length**2) / 12.0
     moments = {"xx": mass * diameter**2 / 8.0, "yy": across, "zz": across}

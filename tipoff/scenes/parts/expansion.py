@@ -11,7 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from tipoff.scenes import overrides as keys
 from tipoff.scenes import provenance
-from tipoff.scenes.parts import body, buttons
+from tipoff.scenes.parts import body, buttons, deployer
 from tipoff.scenes.parts.made import Made, number, text
 from tipoff.scenes.parts.profiles import (
     FRICTION,
@@ -23,7 +23,8 @@ from tipoff.scenes.parts.profiles import (
 
 _BUTTONS: TypeAdapter = TypeAdapter(tuple[buttons.ButtonTable, ...])
 _FILES = ("mesh", "geometry", "section")
-_OWN = ("buttons", "origin")  # parts that are tables or keys of the scene itself
+_WITH_PADS = ("buttons", "deployer")  # parts that give pads
+_OWN = (*_WITH_PADS, "origin")  # parts that are tables or keys of the scene itself
 
 
 class Expansion(NamedTuple):
@@ -39,22 +40,24 @@ class Expansion(NamedTuple):
         if not self.derived:
             return found
         known = {key for key, _, _ in self.faults}
-        incomplete = bool(known) or self.refuses_buttons(found)
+        incomplete = bool(known) or self.refuses_parts(found)
         return self.faults + [
             (key, given, expected)
             for key, given, expected in found
-            if key not in known and not (incomplete and given == "nothing" and _follows(key))
+            if key not in known
+            and not (given == "nothing" and (key in self.derived or (incomplete and _follows(key))))
         ]
 
     @staticmethod
-    def refuses_buttons(found: list[tuple[str, str, str]]) -> bool:
-        """Whether faults that a scene ``found`` are those of its buttons."""
-        return any(key.partition(".")[0] == "buttons" for key, _, _ in found)
+    def refuses_parts(found: list[tuple[str, str, str]]) -> bool:
+        """Whether faults that a scene ``found`` are those of parts that give pads."""
+        return any(key.partition(".")[0] in _WITH_PADS for key, _, _ in found)
 
 
 def _follows(key: str) -> bool:
     """Whether a missing ``key`` may be one that parts give."""
-    return key.split(".")[0] in ("pads", "rail", "contact", "friction") or key == "payload.inertia"
+    tables = ("pads", "rail", "contact", "friction", "thrust")
+    return key.split(".")[0] in tables or key == "payload.inertia"
 
 
 def has_parts(raw: Any) -> bool:
@@ -72,6 +75,11 @@ def expand(raw: dict, bare: bool) -> Expansion:
     body.expand(made)
     if "buttons" in raw:
         _of_buttons(made)
+    if "deployer" in raw:
+        if "buttons" in raw:
+            made.refuse("deployer", "a table", "none beside buttons")
+        else:
+            deployer.expand(made)
     stated = tables.get("provenance")
     if isinstance(stated, Mapping):
         tables["provenance"] = _with_sources(stated, made.derived)
@@ -81,11 +89,16 @@ def expand(raw: dict, bare: bool) -> Expansion:
 
 
 def open_to(raw: dict, overrides: Mapping[str, Any]) -> dict:
-    """``raw``, as it takes ``overrides``: one of a pad that follows from buttons changes a pad written
+    """``raw``, as it takes ``overrides``: one of a pad that follows from a part changes a pad written
     by hand, so all pads are written out first."""
-    if "buttons" in raw and any(key.startswith("pads.") for key in overrides):
+    if gives_pads(raw) and any(key.startswith("pads.") for key in overrides):
         return written_out(raw)
     return raw
+
+
+def gives_pads(raw: Mapping) -> bool:
+    """Whether the pads of a scene as written follow from its parts."""
+    return "pads" not in raw and any(name in raw for name in _WITH_PADS)
 
 
 def written_out(raw: dict) -> dict:

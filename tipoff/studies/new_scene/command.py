@@ -155,11 +155,9 @@ def _from_catalogue(
 ) -> str:
     """The scene of a ``kind`` of the catalogue; files that it names are written beside ``file``. Raises
     SceneError, every fault listed."""
-    import tomllib
-
     from tipoff.faults import SceneError
     from tipoff.files import write_text
-    from tipoff.studies.new_scene import from_catalogue, rocket, template
+    from tipoff.studies.new_scene import deployer, from_catalogue, rocket, template
 
     like = from_catalogue.KINDS[kind]
     beside = [option for option, value in (given | others).items() if value is not None]
@@ -186,11 +184,10 @@ def _from_catalogue(
     text = (
         rocket.text(file.stem, numbers, size, curve)
         if is_rocket
-        else from_catalogue.text(file.stem, like, numbers)
+        else deployer.text(file.stem, kind, numbers)
     )
     beside_it = {} if curve else from_catalogue.files(like)
-    varied = numbers if is_rocket else from_catalogue.numbers(like, numbers, tomllib.loads(text))
-    if errors := rocket.errors(numbers) if is_rocket else from_catalogue.errors(like, varied):
+    if errors := rocket.errors(numbers) if is_rocket else deployer.errors(kind, numbers):
         beside_it[from_catalogue.errors_file(file.stem)] = errors
     if not file.exists():
         for name, content in beside_it.items():

@@ -1,75 +1,97 @@
-"""The deployers of CubeSats from 1U to 16U: the scene ``cubesat_3u`` with the size of another CubeSat.
+"""A scene of a CubeSat in its deployer from a few numbers; size, pads and rails follow from its form.
 
-Four rails of the deployer guide the four rails of the CubeSat at its corners. A spring of the same speed
-at exit pushes it: with the mass m and the stroke s, its force is in proportion to m / s and its rate to m / s^2.
+The spring gives the speed of the scene ``cubesat_3u``: with the mass m and the stroke s, its force is in
+proportion to m / s, and its rate to its force over s.
 """
 
 import math
-from typing import Any, Literal, NamedTuple
+from collections.abc import Mapping
 
-Size = Literal["1u", "1.5u", "2u", "3u", "6u", "12u", "16u"]
-_STANDARD = "CubeSat Design Specification, Rev. 14.1"
-_PAD, _STEP, _GRID, _MOUNT = 16.0, 54.0, 8.0, 16.0  # mm: pad, stations, grid and length of mounts
-_MASS, _STROKE = 4.0, 330.0  # kg, mm: of the scene cubesat_3u
+import tomlkit
+
+from tipoff.scenes.parts.deployer import CUBESATS
+from tipoff.studies.new_scene import from_catalogue
+
+_MASS, _STROKE, _FORCE, _RATE = 4.0, 330.0, 20.0, 0.04  # kg, mm, N, N/mm: of the scene cubesat_3u
+_TEXT = """\
+# A CubeSat in a deployer with a spring. provenance says what is given and assumed: replace what you know.
+# "tipoff scenes --show {name}.toml" writes out size, inertia, pads, rails, stroke and all else that follows.
+# How probable is a rate above 10 deg/s?
+#   tipoff ensemble --scene {name}.toml --limit "x=10 deg/s" --limit "y=10 deg/s" --limit "z=10 deg/s"
+name = {named}
+deployer = {{ cubesat = "{form}" }}
+payload = {{ mass = "{mass:.6g} kg" }}
+contact = {{ clearance = "{clearance:.6g} mm" }}  # play of each pad
+friction = {{ static = 0.2, dynamic = 0.2 }}
+output = {{ interval = "0.5 ms" }}
+studies = {{ errors = {errors}, element_size = "8 mm", neighbours = 5, highfi_repeats = 1 }}
+[thrust]
+kind = "springs"
+[[thrust.springs]]
+preload = "{force:.6g} N"
+rate = "{rate:.6g} N/mm"
+friction = "0.5 N"
+mass = "0.15 kg"  # the pusher plate and half of the spring
+[mass_offset.eccentricity]
+axial = "5 mm"  # the specification allows 20 mm along Y and along Z
+radial = "35 deg"
+[platform]  # an upper stage
+mass = "1500 kg"
+mass_centre = {{ x = "-1 m" }}
+inertia = {{ xx = "1000 kg*m**2", yy = "3000 kg*m**2", zz = "3000 kg*m**2" }}
+[provenance]
+{sources}
+"""
 
 
-class CubeSat(NamedTuple):
-    """Sizes (mm) along the rails and across, and mass (kg)."""
-
-    long: float
-    across: tuple[float, float]  # along Y and Z
-    most: float  # mass that the standard allows
-    source: str
-
-    @property
-    def mass(self) -> float:
-        """Two thirds of the largest mass, as on the scene cubesat_3u."""
-        return 2.0 / 3.0 * self.most
-
-
-SIZES = {
-    "1u": CubeSat(113.5, (100.0, 100.0), 2.0, _STANDARD),
-    "1.5u": CubeSat(170.2, (100.0, 100.0), 3.0, _STANDARD),
-    "2u": CubeSat(227.0, (100.0, 100.0), 4.0, _STANDARD),
-    "3u": CubeSat(340.5, (100.0, 100.0), 6.0, _STANDARD),
-    "6u": CubeSat(366.0, (226.3, 100.0), 12.0, _STANDARD),
-    "12u": CubeSat(366.0, (226.3, 226.3), 24.0, _STANDARD),
-    "16u": CubeSat(454.0, (226.3, 226.3), 32.0, "assumed, since the standard ends at 12U"),
-}
+def text(name: str, form: str, given: Mapping[str, float]) -> str:
+    """The scene as TOML of a ``form`` with the ``given`` numbers (SI) by name of the option."""
+    force, rate = _spring(form, given)
+    file = "cubesat_3u" if errors(form, given) is None else from_catalogue.errors_file(name)
+    return _TEXT.format(
+        name=name,
+        named=tomlkit.item(name).as_string(),
+        form=form,
+        mass=_mass(form, given),
+        clearance=1e3 * given.get("clearance", 0.2e-3),
+        errors=tomlkit.item(file).as_string(),
+        force=force,
+        rate=rate,
+        sources="\n".join(f'"{key}" = "{own}"' for key, own in _sources(form, given).items()),
+    )
 
 
-def resize(document: Any, size: str, mass: float | None) -> None:
-    """Give the ``document`` of the scene cubesat_3u the ``size`` of another CubeSat, with its usual mass
-    or that (kg) of the user."""
-    own = SIZES[size]
-    mass = own.mass if mass is None else mass
-    half, stroke = 0.5 * own.long, own.long - 10.5
-    document["payload"]["mass"] = f"{mass:.6g} kg"
-    document["payload"]["size"] = [_mm(own.long), *map(_mm, own.across)]
-    edge = half - 0.5 * _PAD - 0.25
-    count = max(2, round(2.0 * edge / _STEP) + 1)
-    places = [edge * (2.0 * place / (count - 1) - 1.0) for place in range(count)]
-    document["pads"]["stations"] = [_mm(place) for place in places]
-    document["pads"]["corner"] = [_mm(0.5 * side) for side in own.across]
-    rail, start = _GRID * math.ceil((own.long + 3.0) / _GRID), -math.ceil(half)
-    document["rail"]["start"], document["rail"]["end"] = _mm(start), _mm(start + rail)
-    held = max(2, round(rail / 110.0) + 1)
-    begins = [_GRID * round((rail - _MOUNT) * n / (held - 1) / _GRID) for n in range(held)]
-    document["rail"]["mounts"] = [{"start": _mm(x), "end": _mm(x + _MOUNT)} for x in begins]
-    share = mass / _MASS
-    document["thrust"]["arm"] = _mm(half)
-    spring = document["thrust"]["springs"][0]
-    spring["preload"] = f"{20.0 * share * _STROKE / stroke:.6g} N"
-    spring["rate"] = f"{0.04 * share * (_STROKE / stroke) ** 2:.6g} N/mm"
-    spring["stroke"] = _mm(stroke)
-    stated = f"{own.across[0]:g} x {own.across[1]:g} x {own.long:g} mm"
-    document["provenance"] |= {
+def errors(form: str, given: Mapping[str, float]) -> str | None:
+    """The random errors of the scene ``cubesat_3u`` about the spring and the ``given`` numbers (SI); None if these
+    are its own."""
+    force, _ = _spring(form, given)
+    moved = {} if math.isclose(force, _FORCE) else {"thrust": force}
+    return from_catalogue.errors(from_catalogue.KINDS[form], {**given, **moved})
+
+
+def _mass(form: str, given: Mapping[str, float]) -> float:
+    """The given mass (kg), or two thirds of the largest, as on the scene ``cubesat_3u``."""
+    return given.get("mass", 2.0 / 3.0 * CUBESATS[form].most)
+
+
+def _spring(form: str, given: Mapping[str, float]) -> tuple[float, float]:
+    """Force (N) at zero travel and rate (N/mm) of the spring."""
+    shorter = _STROKE / CUBESATS[form].stroke
+    force = given.get("thrust", _FORCE * _mass(form, given) / _MASS * shorter)
+    return force, _RATE * force / _FORCE * shorter
+
+
+def _sources(form: str, given: Mapping[str, float]) -> dict[str, str]:
+    own = CUBESATS[form]
+    found = {
         "payload.mass": f"assumed: two thirds of {own.most:g} kg; {own.source}: up to {own.most:g} kg",
-        "payload.size": f"{own.source}: {stated}, +- 0.1 mm across",
-        "pads": f"{own.source}: {stated}; rails 8.5 mm wide; assumed: short pads in place of each rail",
-        "thrust.arm": "half of the length",
+        "contact.clearance": "assumed; J-SSOD: 100 +- 0.1 mm across the rails of a CubeSat",
+        "friction": "assumed: hard anodised aluminium on the same",
+        "thrust": "assumed"
+        if "thrust" in given
+        else "assumed: exit at 1.4 m/s, within the 1 to 2 m/s that are usual for deployers",
+        "mass_offset": "assumed",
+        "platform": "assumed: an upper stage",
     }
-
-
-def _mm(length: float) -> str:
-    return f"{round(length, 6):g} mm"
+    quantities = from_catalogue.KINDS[form].quantities
+    return found | {quantities[option].keys[0]: from_catalogue.GIVEN for option in given}
