@@ -39,6 +39,10 @@ def test_options_without_effect_are_refused():
     words = ["montecarlo", "--scene", "tiny", "--finer", "5", "--interface", "--model", "springs"]
     found = call("validation", *words)
     assert found.returncode == 2 and "--finer: " in found.stderr and "--interface: " in found.stderr
+    file = call(
+        "validation", "montecarlo", "--scene", "tiny", "--vary", "paper", "--reading", "half"
+    )
+    assert file.returncode == 2 and "--vary: " in file.stderr
 
 
 def test_added_studies_are_on_the_page(monkeypatch):

@@ -1,7 +1,8 @@
 """Run random errors of thrust and mass as in the paper's Table 3: quantiles of the rates and
 probabilities above limits, with bounds; writes montecarlo.json.
 
-The paper has 1,000 cases. Its Table 3 can be read in several ways; all readings are compared.
+The paper has 1,000 cases. Its Table 3 can be read in several ways; all readings are compared. --vary has
+the errors of a file instead.
 Both surrogates run the same cases. With --reference the first cases also run in the finite
 elements. They correct rates, quantiles and probabilities; this writes tails.json.
 
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING
 from tipoff.studies.commands.declared import command
 from tipoff.studies.commands.request import Request
 from tipoff.studies.commands.running import Output
+from tipoff.studies.populations.reading import Reading
 from tipoff.studies.question import Contents, Entry, Result, Section
 from validation.montecarlo.options import Cases, Options
 
@@ -50,6 +52,10 @@ def _require(options: Options) -> None:
     if options.population.reading.interface and options.population.model == SPRINGS:
         expected = "none with --model springs, which have no interface stiffness"
         faults.append(Fault("--interface", "option", "yes", expected))
+    vary = options.population.vary
+    if vary is not None and options.population.reading != Reading():
+        expected = "no option of a reading, since the file has the distributions"
+        faults.append(Fault("--vary", "option", vary, expected))
     if faults:
         raise SceneError(faults)
 

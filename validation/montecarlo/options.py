@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import At, Seed, Surrogate, rate_limits
+from tipoff.studies.commands.options import At, Seed, Surrogate, errors_file, rate_limits
 from tipoff.studies.populations.reading import Reading
 
 FEWEST_FINE = 4  # draws on the finer mesh
@@ -15,10 +15,12 @@ _SHARE_FINE = 0.1  # of the draws are on the finer mesh too
 
 @dataclass(frozen=True)
 class Cases:
-    """``limits`` in the form of ``exceedance.limits``; ``model`` and ``at`` None: the default."""
+    """``limits`` in the form of ``exceedance.limits``; ``vary`` None: the ``reading``; ``model`` and
+    ``at`` None: the default."""
 
     cases: Annotated[int, typer.Option(metavar="N", min=100, help="Number of cases.")] = 1_000_000
     seed: Seed = 1
+    vary: Annotated[str | None, errors_file("the reading of the paper's Table 3")] = None
     reading: Reading = Reading()
     limits: Annotated[
         tuple[str, ...],

@@ -73,17 +73,20 @@ def draw(found: MonteCarlo) -> list[Part]:
         Fold("All quantiles, also of the paper's number of cases", [_quantiles(found)]),
         table_of_tails(found),
         convergence,
-        Heading("Effect of the reading of the paper's Table 3"),
-        _readings(found),
+        *_readings(found),
         *models,
         *_apart(found),
-        _PAPER,
+        *([] if found.asked.vary else [_PAPER]),
     ]
 
 
 def summary(found: MonteCarlo) -> list[Part]:
     """Quantiles and probabilities above limits, for the terminal."""
-    lines = [*_run(found), *_different(found.readings), *_model_error(found)]
+    lines = [
+        *_run(found),
+        *(_different(found.readings) if found.readings else []),
+        *_model_error(found),
+    ]
     return [Bullets(lines), table_of_quantities(found), table_of_tails(found)]
 
 
@@ -280,7 +283,14 @@ def table_of_tails(found: MonteCarlo) -> Table:
     )
 
 
-def _readings(found: MonteCarlo) -> Table:
+def _readings(found: MonteCarlo) -> list[Part]:
+    """The rates of each reading; nothing with a file of errors."""
+    if not found.readings:
+        return []
+    return [Heading("Effect of the reading of the paper's Table 3"), table_of_readings(found)]
+
+
+def table_of_readings(found: MonteCarlo) -> Table:
     shares = (0.5, 0.95, 0.99, 0.9973)
     rows: list[tuple] = []
     for item in found.readings:

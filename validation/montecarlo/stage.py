@@ -1,5 +1,5 @@
-"""Stage ``montecarlo``: the paper's random errors (Table 3) on the surrogate, with the paper's
-1,000 cases and with many more.
+"""Stage ``montecarlo``: the paper's random errors (Table 3), or those of a file, on the surrogate, with the
+paper's 1,000 cases and with many more.
 
 Case n depends on the seed and on n alone, so the first 1,000 cases are the same for any number of
 cases. The paper gives no numbers of this study: its Figure 9 shows histograms, and its text states
@@ -8,6 +8,7 @@ that three drop tests lie within them.
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from tipoff.studies.populations.population import Population
 from tipoff.studies.populations.random_factors import READINGS
 from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError
+from validation.montecarlo import cases
 from validation.montecarlo.options import Cases
 from validation.montecarlo.results import (
     Compared,
@@ -47,7 +49,7 @@ def run(study: Study, options: Cases = Cases()) -> Made[MonteCarlo]:
     """
     limits, source = together(
         lambda: exceedance.limits(options.limits),
-        lambda: random_factors.source(study.scene, options.reading, options.cases, options.seed),
+        lambda: cases.source(study.scene, options, options.cases),
     )
 
     def make() -> tuple[MonteCarlo, list[Path]]:
@@ -65,7 +67,7 @@ def run(study: Study, options: Cases = Cases()) -> Made[MonteCarlo]:
         made = MonteCarlo(
             **population.answering(study, found.model),
             asked=options,
-            reading=options.reading.words,
+            reading=cases.words(options),
             store=found.store,
             counts=found.counts,
             settled=settled,
@@ -74,11 +76,11 @@ def run(study: Study, options: Cases = Cases()) -> Made[MonteCarlo]:
             quantities=tuple(distribution(item, found) for item in answers.ALL),
             tails=tuple(_tail(limit, np.degrees(found.results.rate)) for limit in limits),
             convergence=tuple(
-                Converging(**vars(quantile), name=item.name, cases=cases)
+                Converging(**vars(quantile), name=item.name, cases=count)
                 for item in _RATES
-                for cases, quantile in spread.convergence(item.of(found.results), _SHARES)
+                for count, quantile in spread.convergence(item.of(found.results), _SHARES)
             ),
-            readings=tuple(_readings(study, options, found)),
+            readings=() if options.vary else tuple(_readings(study, options, found)),
             models=compared(study, options, found),
             models_missing=missing(study),
         )
@@ -87,13 +89,15 @@ def run(study: Study, options: Cases = Cases()) -> Made[MonteCarlo]:
     return STAGE.run(study, options, make)
 
 
-def fitted(study: Study, _options: object) -> str | None:
-    """Key of the calibration, with which both models are compared; None without one."""
+def inputs(study: Study, options: Cases) -> Any:
+    """Key of the calibration, with which both models are compared, None without one; with the errors of a
+    file, if one is given."""
     found = calibrate.stored(study)
-    return found.key if found else None
+    key = found.key if found else None
+    return (more | {"calibration": key}) if (more := cases.inputs(study.scene, options)) else key
 
 
-STAGE = Stage(NAME, __name__, options=Cases, inputs=fitted, result=MonteCarlo)
+STAGE = Stage(NAME, __name__, options=Cases, inputs=inputs, result=MonteCarlo)
 
 
 def _settled(quantity: answers.Quantity, found: Population, first: int | None = None) -> np.ndarray:
@@ -131,12 +135,12 @@ def _tail(limit: exceedance.Limit, rates: np.ndarray) -> Tail:
 def _readings(study: Study, options: Cases, found: Population) -> Iterator[ReadingRow]:
     """Each reading with its own seed and the modes of the study, compared with the cases of the study;
     the row of the same reading is the control."""
-    cases = min(_COMPARED, options.cases)
-    here = [_settled(item, found, cases) for item in _RATES]
+    count = min(_COMPARED, options.cases)
+    here = [_settled(item, found, count) for item in _RATES]
     for place, reading in enumerate(READINGS):
         if reading.needs_contact and study.scene.contact is None:
             continue
-        drawn = random_factors.source(study.scene, reading, cases, options.seed + 1 + place)
+        drawn = random_factors.source(study.scene, reading, count, options.seed + 1 + place)
         other = population.run(study, f"{NAME}-reading", found.model, drawn)
         values = [_settled(item, other) for item in _RATES]
         enough = values[0].size >= _FEWEST
@@ -150,7 +154,7 @@ def _readings(study: Study, options: Cases, found: Population) -> Iterator[Readi
         yield ReadingRow(
             reading=reading.words,
             same=reading == options.reading,
-            cases=cases,
+            cases=count,
             settled=int(other.settled.sum()),
             distance=distance,
             chance=chance,
@@ -174,19 +178,19 @@ def compared(study: Study, options: Cases, found: Population) -> Compared | None
     both are the same model, and without a calibration for the scene."""
     if missing(study):
         return None
-    cases = min(PAPER, options.cases)
-    drawn = random_factors.source(study.scene, options.reading, cases, options.seed)
+    count = min(PAPER, options.cases)
+    drawn = cases.source(study.scene, options, count)
     names = (SPRINGS, COMPLIANT) if found.model.name == SPRINGS else (COMPLIANT, SPRINGS)
     own = population.surrogate(study, names[1])._replace(instant=found.model.instant)
     other = population.run(study, f"{NAME}-other", own, drawn)
-    both = found.settled[:cases] & other.settled
+    both = found.settled[:count] & other.settled
 
     def of(item: answers.Quantity) -> dict[str, np.ndarray]:
         results = (found.results, other.results)
-        return {name: item.of(each)[:cases][both] for name, each in zip(names, results)}
+        return {name: item.of(each)[:count][both] for name, each in zip(names, results)}
 
     return Compared(
-        cases=cases,
+        cases=count,
         both_settled=int(both.sum()),
         modes=other.model.modes,
         modes_why=other.model.modes_why,

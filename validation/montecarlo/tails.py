@@ -5,19 +5,21 @@ surrogate are counted by the number of contacts, and correct the statistics of a
 (``populations.control_variate``, ``populations.poststratified``)."""
 
 from pathlib import Path
+from typing import Any
 
 from tipoff.faults import Fault, SceneError, together
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.derived import Derived
+from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
+from tipoff.studies.populations import answers, exceedance, population, spread
 from tipoff.studies.populations import draws as paired
 from tipoff.studies.populations.draws import Draws
 from tipoff.studies.populations.population import Population
 from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
-from validation.montecarlo import control_variate, paired_statistics, rungs
+from validation.montecarlo import cases, control_variate, paired_statistics, rungs
 from validation.montecarlo import stage as montecarlo
 from validation.montecarlo.options import FEWEST_FINE, Options
 from validation.montecarlo.paired_statistics import RATES, both_settled
@@ -59,7 +61,7 @@ def run(study: Study, options: Options) -> Made[Tails]:
         made = Tails(
             **population.answering(study, model),
             asked=options,
-            reading=asked.reading.words,
+            reading=cases.words(asked),
             store=whole.store,
             cases=len(whole.settled),
             settled=int(whole.settled.sum()),
@@ -92,16 +94,20 @@ def run(study: Study, options: Options) -> Made[Tails]:
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage(NAME, __name__, options=Options, inputs=montecarlo.fitted, result=Tails)
+def _inputs(study: Study, options: Options) -> Any:
+    return montecarlo.inputs(study, options.population)
 
 
-def checked(study: Study, options: Options) -> tuple[list[exceedance.Limit], Derived, int]:
+STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Tails)
+
+
+def checked(study: Study, options: Options) -> tuple[list[exceedance.Limit], Derived | Drawn, int]:
     """Limits, cases, and the number of draws. Raises SceneError listing every fault."""
     asked = options.population
     return tuple(
         together(
             lambda: exceedance.limits(asked.limits),
-            lambda: random_factors.source(study.scene, asked.reading, asked.cases, asked.seed),
+            lambda: cases.source(study.scene, asked, asked.cases),
             lambda: _draws(options),
         )
     )
