@@ -257,11 +257,12 @@ def with_present(study: Study, made: Made[dict]) -> Made[dict]:
     ours, swept = compare.stored(study), sweeps.STAGE.stored(study)
     present = {
         "ours": ours and asdict(ours.speedup),
-        "plateaus": swept
-        and {
+        "plateaus": {
             factor.name: [_plateau(bent) for bent in factor.growth.values()]
             for factor in swept.result.launches[0].factors
-        },
+        }
+        if swept and swept.result.asked.vary is None
+        else None,
         "catalogue": {
             "name": kept.name,
             "same": not _differing(kept.physics(), best.physics()),

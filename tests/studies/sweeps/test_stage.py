@@ -62,7 +62,7 @@ def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path,
             exact = np.array(
                 [
                     [by_hand(factor.name, size, angle) for angle in factors.angles(8)]
-                    for size in factors.SIZES
+                    for size in factor.sizes
                 ]
             )
             turning = np.radians(exact)

@@ -89,7 +89,8 @@ def _scatter(factor: Swept) -> Chart:
 
 def _growth(found: Sweeps) -> Chart:
     panels = [_grown(launch, factor) for launch in found.launches for factor in launch.factors]
-    return Chart("sweep-growth", panels, columns=3, height=290)
+    columns = len(found.launches[0].factors)
+    return Chart("sweep-growth", panels, columns=columns, height=290)
 
 
 def _grown(launch: Launch, factor: Swept) -> Panel:
@@ -133,7 +134,7 @@ def _map(factor: Swept, sides: Sides, faces: Sequence[str]) -> Picture:
         place.set_title(title, fontsize=10.5)
     for place in axes.flat[:5]:
         place.tick_params(labelsize=7.5)
-        place.set_rticks([0.5, 1.0])
+        place.set_rticks([0.5 * factor.sizes[-1], factor.sizes[-1]])
         place.grid(linewidth=0.3)
     axes[1, 2].set_axis_off()
     handles: list[Artist] = [

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import At, Surrogate
+from tipoff.studies.commands.options import At, Surrogate, errors_file
 from tipoff.workspace.options import between
 
 FEWEST = 8  # smallest number of directions that separates the walls
@@ -13,7 +13,9 @@ FEWEST = 8  # smallest number of directions that separates the walls
 
 @dataclass(frozen=True)
 class Options:
-    """``model`` and ``at`` None: the default."""
+    """``vary`` None: every error up to 1 deg or mm; ``model`` and ``at`` None: the default."""
+
+    vary: Annotated[str | None, errors_file("each error up to 1 deg or 1 mm")] = None
 
     angles: Annotated[
         int,

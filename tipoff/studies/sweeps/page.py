@@ -55,7 +55,13 @@ def _runs(found: Sweeps) -> list[Part]:
     names = ("not_settled", "exit_s", "share_after_exit")
     cases = ("cases", lambda launch: launch.cases["asked"])
     table = Table.of_records(found.launches, "stretch", cases, *names)
-    return [Bullets([population.model_line(found)]), table]
+    lines = [population.model_line(found)]
+    if found.asked.vary is not None:
+        lines.append(
+            f"errors of {found.asked.vary}, each alone in every direction, up to the size that 99.9 % of its "
+            "draws stay below; its other inputs are not swept"
+        )
+    return [Bullets(lines), table]
 
 
 def _launched(launch: Launch) -> list[Part]:

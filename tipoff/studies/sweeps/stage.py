@@ -4,6 +4,7 @@ the walls that the payload touches, and both for a longer or shorter thrust."""
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
 from tipoff.studies.sweeps import burnout, factors, knee, sides
 from tipoff.studies.sweeps import figures as drawing
-from tipoff.studies.sweeps.factors import FACTORS, SIZES, Factor
+from tipoff.studies.sweeps.factors import FACTORS, SHARES, Factor
 from tipoff.studies.sweeps.options import FEWEST, Options
 from tipoff.studies.sweeps.results import Curve, Launch, Sides, Sweeps, Swept
 from tipoff.workspace.progress import Board
@@ -33,16 +34,17 @@ _DEPARTS = 0.05
 
 def run(study: Study, options: Options = Options()) -> Made[Sweeps]:
     """Rates over the size of each error. Raises SceneError for bad input, before anything runs."""
+    errors = _swept_errors(study, options)
 
     def make() -> tuple[Sweeps, list[Path]]:
         model = population.surrogate(study, options.model)
         alone = model._replace(scene=factors.alone(model.scene)).watched(options.at)
-        launch, alone = _launch(study, alone, options, 1.0, burnout.exit_of(alone))
-        faces, touched = _sides(study, alone, options)
+        launch, alone = _launch(study, alone, options, 1.0, burnout.exit_of(alone), errors)
+        faces, touched = _sides(study, alone, options, errors)
         swept = tuple(replace(each, sides=own) for each, own in zip(launch.factors, touched))
         launches = [replace(launch, faces=faces, factors=swept)]
         if other := burnout.other_way(alone):
-            launches.append(_launch(study, other[1], options, other[0], other[2])[0])
+            launches.append(_launch(study, other[1], options, other[0], other[2], errors)[0])
         found = Sweeps(
             **population.answering(study, alone),
             asked=options,
@@ -53,17 +55,31 @@ def run(study: Study, options: Options = Options()) -> Made[Sweeps]:
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage(NAME, __name__, options=Options, result=Sweeps)
+def _swept_errors(study: Study, options: Options) -> tuple[Factor, ...]:
+    return FACTORS if options.vary is None else factors.of_file(options.vary, study.scene)
+
+
+def _inputs(study: Study, options: Options) -> Any:
+    """The errors of a file with their largest sizes; None without one."""
+    return None if options.vary is None else _swept_errors(study, options)
+
+
+STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Sweeps)
 
 
 def _launch(
-    study: Study, model: Surrogate, options: Options, stretch: float, leaves: burnout.Exit | None
+    study: Study,
+    model: Surrogate,
+    options: Options,
+    stretch: float,
+    leaves: burnout.Exit | None,
+    errors: tuple[Factor, ...],
 ) -> tuple[Launch, Surrogate]:
     """All cases of one surrogate in one ensemble: the results of each factor, and the surrogate
     with the rail modes of its cases."""
     directions = factors.angles(options.angles)
-    found = population.run(study, NAME, model, factors.cases(directions), _TOLERANCE)
-    count = len(SIZES) * options.angles
+    found = population.run(study, NAME, model, factors.cases(errors, directions), _TOLERANCE)
+    count = len(SHARES) * options.angles
     until = leaves.time + 0.5 * EXIT_WINDOW if leaves and model.instant.at == EXIT else None
     made = Launch(
         stretch=stretch,
@@ -74,7 +90,7 @@ def _launch(
         store=found.store,
         factors=tuple(
             _swept(found, factor, directions, slice(place * count, (place + 1) * count), until)
-            for place, factor in enumerate(FACTORS)
+            for place, factor in enumerate(errors)
         ),
     )
     return made, found.model
@@ -85,9 +101,9 @@ def _swept(
 ) -> Swept:
     """Results of one factor from its ``part`` of the cases; ``until`` (s): the end of the impulse of
     the free payload, None for the whole."""
-    shape = len(SIZES), len(directions)
+    sizes, shape = factor.sizes, (len(factor.sizes), len(directions))
     values = {item.name: item.of(found.results)[part].reshape(shape) for item in answers.ALL}
-    rows = factor.rows(SIZES, directions)
+    rows = factor.rows(sizes, directions)
     free = np.degrees(factors.free_rates(found.model.scene, rows, until)).reshape(*shape, 3)
     total, free_total = values[answers.TOTAL_RATE.name], np.linalg.norm(free, axis=2)
     departs = (abs(total - free_total) > _DEPARTS * free_total).any(axis=1)
@@ -95,7 +111,7 @@ def _swept(
         name=factor.name,
         label=factor.label,
         unit=factor.unit,
-        sizes=tuple(SIZES.tolist()),
+        sizes=tuple(sizes.tolist()),
         angles_deg=tuple(np.degrees(directions).tolist()),
         values={name: tuple(map(_plain, table)) for name, table in values.items()},
         largest={name: _plain(knee.largest(abs(table))) for name, table in values.items()},
@@ -103,25 +119,25 @@ def _swept(
             item.name: _plain(abs(column).max(axis=1))
             for item, column in zip(JUDGED, [*np.moveaxis(free, 2, 0), free_total])
         },
-        departs_from_free_at=float(SIZES[departs.argmax()]) if departs.any() else None,
-        growth={item.name: knee.growth(SIZES, abs(values[item.name])) for item in JUDGED},
+        departs_from_free_at=float(sizes[departs.argmax()]) if departs.any() else None,
+        growth={item.name: knee.growth(sizes, abs(values[item.name])) for item in JUDGED},
     )
 
 
 def _sides(
-    study: Study, model: Surrogate, options: Options
+    study: Study, model: Surrogate, options: Options, errors: tuple[Factor, ...]
 ) -> tuple[tuple[str, ...], list[Sides | None]]:
     """Names of the faces, and for each factor the face that touched first and the one with the
     largest impulse, on a coarser grid of directions."""
     if model.scene.contact is None:
-        return (), [None] * len(FACTORS)
+        return (), [None] * len(errors)
     directions = factors.angles(max(FEWEST, options.angles // _COARSER))
-    rows = [row for factor in FACTORS for row in factor.rows(SIZES, directions)]
+    rows = [row for factor in errors for row in factor.rows(factor.sizes, directions)]
     with Board("which walls", 1) as board:
         seen = sides.found(
             model, rows, study.settings.workers, board.callback(f"which walls, {len(rows)} cases")
         )
-    shape = len(FACTORS), len(SIZES), len(directions)
+    shape = len(errors), len(SHARES), len(directions)
     names = sides.names(model.scene)
     faces = np.array([*names, ""])  # the last is for no face, -1
     return tuple(names), [
