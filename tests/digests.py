@@ -22,6 +22,7 @@ import numpy as np
 
 from tests.written_names import ARRAYS_OF_REFERENCE
 from tipoff import calibration, highfi, lowfi, scenes
+from tipoff.calibration import rail_compliance
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.results.trajectory import Trajectory
@@ -82,9 +83,10 @@ def trajectories(names: tuple[str, ...]) -> Iterator[str]:
         scene = scenes.load(name)
         compliance = calibration.compliance(scene, COARSE)
         yield line(f"{name}/compliance", digest(*_arrays(compliance)))
+        walls = rail_compliance.walls(scene)
         for condition in scene.conditions:
             one = scene.condition(condition)
-            for model, given in ((COMPLIANT, compliance), (SPRINGS, None)):
+            for model, given in ((COMPLIANT, compliance), (SPRINGS, walls)):
                 yield line(
                     f"{name}/{condition}/{model}",
                     of_trajectory(lowfi.run(one, model, compliance=given)),
