@@ -9,6 +9,9 @@ This line is a comment in TOML, and readers of HDF5, netCDF and zip ignore it. A
 (``tipoff.cache``) has a line ``# key <key>`` before it. A JSON file has the digest under the key
 ``sha256`` instead; it is the digest of the canonical JSON of all other keys, so that it does not
 depend on the layout.
+
+Results state the number of their format: JSON and TOML under the key ``format``, netCDF in an attribute of
+this name, npz in an array. A file without it is of the first format.
 """
 
 import codecs
@@ -28,6 +31,8 @@ from pathlib import Path
 from typing import Any
 
 MOST_TEXT = 2**25  # bytes of a text file from a user; reading takes about ten times as much memory
+FORMAT = 1  # of result files
+FORMAT_KEY = "format"
 KEY = "sha256"  # of the digest in a JSON object
 _MARK = b"# sha-256 "
 _ENCODINGS = {  # by the mark that a text begins with
@@ -219,7 +224,7 @@ def labelled_netcdf(variables: Mapping[str, Labelled], attributes: Mapping[str, 
 
 def write_netcdf(path: str | Path, found: Any) -> None:
     """Write an xarray Dataset or DataTree as ``sealed`` does."""
-    write_sealed(path, netcdf(found))
+    write_sealed(path, netcdf(found.assign_attrs({FORMAT_KEY: FORMAT})))
 
 
 def require_whole(path: str | Path) -> str:
@@ -247,10 +252,16 @@ def _content(path: str | Path) -> bytes:
         return stream.read()
 
 
+def require_format(path: str | Path, stated: Any) -> None:
+    """Raise DamageError unless a result file states ``FORMAT``, or None."""
+    if stated is not None and stated != FORMAT:
+        raise DamageError(path, f"has format {stated}, and this version reads format {FORMAT}")
+
+
 def write_json(path: str | Path, value: Mapping[str, Any]) -> dict[str, Any]:
     """Write ``value`` as strict JSON (no NaN) with its digest, atomically; returns the object as in
     the file."""
-    found = with_digest(value)
+    found = with_digest({FORMAT_KEY: FORMAT, **value})
     write_text(path, json.dumps(found, indent=1, allow_nan=False) + "\n")
     return found
 
@@ -267,6 +278,7 @@ def read_json(path: str | Path) -> dict[str, Any]:
         raise DamageError(
             path, _DIFFERS if isinstance(found, dict) and KEY in found else _CARRIES_NONE
         )
+    require_format(path, found.get(FORMAT_KEY))
     return found
 
 

@@ -21,7 +21,7 @@ from tipoff.scenes import (
     studies,
 )
 from tipoff.scenes import catalog as catalog
-from tipoff.scenes import parse as parse
+from tipoff.scenes.arguments import parse as parse
 
 _EXPECTED = {
     "compliance": arguments.kind(

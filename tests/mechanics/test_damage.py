@@ -190,7 +190,7 @@ def test_json_carries_its_digest_and_stays_plain(tmp_path):
     written = write_json(path, DOCUMENT)
     plain = json.loads(path.read_text())
     assert read_json(path) == plain == json.loads(json.dumps(written))
-    assert {name for name in plain if name not in DOCUMENT} == {"sha256"}
+    assert {name for name in plain if name not in DOCUMENT} == {"format", "sha256"}
     content = path.read_bytes()
     for place in range(len(content)):
         path.write_bytes(flipped(content, place))

@@ -27,6 +27,7 @@ TEXTS = kept.texts()
 ENVELOPE = {
     "stage",
     "scene",
+    "format",
     "quantities",
     "made",
     "key",

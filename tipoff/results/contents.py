@@ -4,7 +4,7 @@ attributes."""
 import json
 from typing import Any
 
-from tipoff.files import Labelled, labelled_netcdf
+from tipoff.files import FORMAT, FORMAT_KEY, Labelled, labelled_netcdf
 from tipoff.mechanics import ledger, outcome
 
 VECTOR = ("x", "y", "z")
@@ -76,10 +76,11 @@ def variables(run: Any) -> dict[str, Labelled]:
     return found | {name: ((name,), list(labels), {}) for name, labels in texts.items()}
 
 
-def attributes(run: Any) -> dict[str, str]:
+def attributes(run: Any) -> dict[str, Any]:
     plain = {name: json.dumps(getattr(run, name), allow_nan=False) for name in PLAIN}
     return {
         **({} if run.error is None else {"error": run.error.written()}),
+        FORMAT_KEY: FORMAT,
         "model": run.model,
         "status": run.status,
         "message": run.message,

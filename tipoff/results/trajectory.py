@@ -18,7 +18,9 @@ import numpy as np
 from tipoff import sources
 from tipoff.cards import Carded
 from tipoff.files import (
+    FORMAT_KEY,
     DamageError,
+    require_format,
     require_whole,
     write_csv,
     write_sealed,
@@ -332,6 +334,7 @@ class Trajectory(Carded, Completed):
         try:
             require_whole(path)
             with h5py.File(path) as data:
+                require_format(path, data.attrs.get(FORMAT_KEY))
                 arrays: dict[str, Any] = {
                     name: data[name][()]
                     for name in ("time", *DIMENSIONS)

@@ -6,15 +6,41 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
-from tipoff import units
+from tipoff import scenes, units
 from tipoff.faults import Fault, SceneError, close, kind_of
-from tipoff.scenes import overrides, suggestions
+from tipoff.scenes import overrides, reading, suggestions
 from tipoff.scenes.rounding import below
 from tipoff.scenes.scene import Scene, load
 from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS
 
 _T = TypeVar("_T")
 _LENGTHS = {"element_size": "m", "step": "s", "speed_floor": "m/s"}  # numerics with a unit
+
+
+def parse(
+    raw: Mapping[str, Any], source: str = "scene", bare_numbers_are_si: bool = False
+) -> Scene:
+    """Validate a nested mapping, including all its conditions.
+
+    Args:
+        raw: tables by name, as TOML has them; with or without the number ``format``.
+        source: name of the mapping in messages.
+        bare_numbers_are_si: whether numbers without a unit are taken as SI.
+
+    Returns:
+        Scene: the scene.
+
+    Raises:
+        SceneError: every fault with source, key, given and expected.
+
+    Example:
+        >>> tipoff.parse({"name": "mine"})
+        Traceback (most recent call last):
+        ...
+        tipoff.faults.SceneError: 4 faults in the scene
+        ...
+    """
+    return scenes.parse(reading.of_this_format(raw, source), source, bare_numbers_are_si)
 
 
 def scene_of(given: Any) -> Scene:

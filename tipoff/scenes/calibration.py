@@ -9,7 +9,16 @@ import numpy as np
 
 from tipoff import toml
 from tipoff.cards import Carded
-from tipoff.files import DamageError, is_sealed, read_input, require_whole, sealed
+from tipoff.files import (
+    FORMAT,
+    FORMAT_KEY,
+    DamageError,
+    is_sealed,
+    read_input,
+    require_format,
+    require_whole,
+    sealed,
+)
 from tipoff.scenes import changes as added
 from tipoff.scenes.scene import Scene
 
@@ -152,7 +161,11 @@ class Calibration(Carded):
         Example:
             >>> tipoff.Calibration.load("calibration.toml").save("again.toml")
         """
-        tables = asdict(self) | {"information": np.asarray(self.information).tolist()}
+        tables = (
+            {FORMAT_KEY: FORMAT}
+            | asdict(self)
+            | {"information": np.asarray(self.information).tolist()}
+        )
         with sealed(path) as temporary:
             temporary.write_text(toml.dumps(tables), encoding="utf-8", newline="\n")
 
@@ -178,6 +191,7 @@ class Calibration(Carded):
             if is_sealed(path):
                 require_whole(path)
             data = tomllib.loads(read_input(path).decode("utf-8-sig"))
+            require_format(path, data.pop(FORMAT_KEY, None))
             return cls(**data | {"information": np.array(data["information"])})
         except DamageError as fault:
             raise ValueError(

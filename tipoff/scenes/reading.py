@@ -8,7 +8,7 @@ differs.
 """
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from tipoff.faults import Fault, SceneError, close, kind_of
 from tipoff.files import read_input
 from tipoff.scenes import overrides, provenance, rail
 
+FORMAT = 1  # of scene files; each states it under the key ``format``, or is read as this one
 CATALOG = Path(__file__).resolve().parent / "catalog"
 _CHOICE = {"thrust": "kind", "contact": "law", "section": "shape"}
 # relative to the scene file; with a suffix if the value may also be a name of the catalogue
@@ -61,7 +62,7 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
         raise SceneError(
             [Fault(user_file, key, str(path), "files that do not extend each other in a circle")]
         )
-    raw = toml(path, user_file, key)
+    raw = of_this_format(toml(path, user_file, key), user_file, "" if not chain else f"{path}: ")
     for name, entry, *suffix in _FILES:
         for table in _with_springs(raw.get(name)):
             if (
@@ -96,7 +97,7 @@ def replaced_by_conditions(name_or_path: str | Path) -> list[str]:
     path = Path(name_or_path)
     if path.suffix != ".toml":
         return []
-    own = toml(path, str(path))
+    own = of_this_format(toml(path, str(path)), str(path))
     whole, stated = _inherit(path, str(path), ()), own.get("conditions", {})
     conditions = whole.get("conditions", {})
     inherited = {
@@ -118,6 +119,23 @@ def replaced_by_conditions(name_or_path: str | Path) -> list[str]:
                 f'"absent"'
             )
     return found
+
+
+def of_this_format(raw: Any, source: str, inherited: str = "") -> Any:
+    """The tables of a scene without the number of their format. Raises SceneError for another number than
+    ``FORMAT``, in place of the faults of its keys; ``inherited`` begins the given value."""
+    if not isinstance(raw, Mapping) or "format" not in raw:
+        return raw
+    stated = raw["format"]
+    if type(stated) is not int or stated != FORMAT:
+        from importlib.metadata import version  # slow to load
+
+        expected = (
+            f"{FORMAT}, the format that tipoff {version('tipoff')} reads: install a version that reads "
+            f"yours, or write format = {FORMAT} and change the keys that are then refused"
+        )
+        raise SceneError([Fault(source, "format", f"{inherited}{stated!r}", expected)])
+    return {key: value for key, value in raw.items() if key != "format"}
 
 
 def toml(path: Path, user_file: str, key: str = "file") -> dict:

@@ -259,26 +259,7 @@ class Scene(inputs.Inputs, shown.Shown, launch.Timed, Table):
 def parse(
     raw: Mapping[str, Any], source: str = "scene", bare_numbers_are_si: bool = False
 ) -> Scene:
-    """Validate a nested mapping, including all its conditions.
-
-    Args:
-        raw: tables by name, as TOML has them.
-        source: name of the mapping in messages.
-        bare_numbers_are_si: whether numbers without a unit are taken as SI.
-
-    Returns:
-        Scene: the scene.
-
-    Raises:
-        SceneError: every fault with source, key, given and expected.
-
-    Example:
-        >>> tipoff.parse({"name": "mine"})
-        Traceback (most recent call last):
-        ...
-        tipoff.faults.SceneError: 4 faults in the scene
-        ...
-    """
+    """The scene of the tables of a file, as ``tipoff.parse``, but without the number of the format."""
     keys.require_shallow(raw, source)
     tables = keys.without_absent(keys.plain(raw), Scene)
     if isinstance(tables, dict) and (wrong := pads.expand(tables)):

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from tipoff.scenes import overrides, suggestions
+from tipoff.scenes import overrides, reading, suggestions
 from tipoff.scenes.scene import Scene
 from tipoff.units import to_si
 
@@ -29,6 +29,10 @@ def schema() -> dict:
     """The schema (draft 7) as JSON values."""
     found = _of_file(Scene.model_json_schema())
     properties = found["properties"]
+    properties["format"] = {
+        "const": reading.FORMAT,
+        "description": "Number of the format of this file.",
+    }
     properties["extends"] = {
         "type": "string",
         "description": "Scene of the catalogue, or file, whose tables this file changes.",

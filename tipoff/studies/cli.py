@@ -124,7 +124,7 @@ def scenes(
         from tipoff import toml
         from tipoff.faults import Fault, SceneError, close
         from tipoff.files import replacing
-        from tipoff.scenes import catalog, load, uncertainty
+        from tipoff.scenes import catalog, load, reading, uncertainty
         from tipoff.scenes.scene import CATALOG
         from tipoff.scenes.schema import schema as rules
         from tipoff.workspace.progress import say
@@ -146,7 +146,7 @@ def scenes(
             say(f"the launcher: {draw}")
             return Output({"scene": show, "drawing": str(draw)})
         if show is not None and (show.endswith(".toml") or Path(show).is_file()):
-            text = toml.dumps(load(show).written_out())
+            text = toml.dumps({"format": reading.FORMAT} | load(show).written_out())
             if not json_:
                 print(text, end="")
             return Output({"scene": show, "file": text})

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tipoff.files import require_whole
+from tipoff.files import FORMAT, FORMAT_KEY, require_format, require_whole
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance.nodal import Nodal, Tables
 
@@ -50,7 +50,9 @@ def read_joints(path: str | Path) -> JointTerms:
 def _arrays(path: str | Path) -> dict[str, np.ndarray]:
     require_whole(path)
     with np.load(path, allow_pickle=False) as found:
-        return dict(found)
+        arrays = dict(found)
+    require_format(path, arrays.pop(FORMAT_KEY, None))
+    return arrays
 
 
 def _named(terms: JointTerms | Nodal | None, prefix: str) -> dict[str, np.ndarray]:
@@ -65,5 +67,5 @@ def _joints(found: dict[str, Any]) -> JointTerms:
 
 def _written(arrays: Mapping[str, Any]) -> bytes:
     stream = io.BytesIO()
-    np.savez(stream, **arrays)
+    np.savez(stream, **{**arrays, FORMAT_KEY: FORMAT})
     return stream.getvalue()

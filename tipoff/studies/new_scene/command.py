@@ -200,7 +200,7 @@ def _require_scene(text: str, file: Path) -> None:
     """Raise SceneError unless ``text`` is a valid scene as the content of ``file``."""
     import tomllib
 
-    from tipoff.scenes import parse
+    from tipoff.scenes.arguments import parse
 
     raw = tomllib.loads(text)
     if "file" in raw["thrust"]:

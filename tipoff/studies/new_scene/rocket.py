@@ -12,7 +12,7 @@ from tipoff.files import read_input
 from tipoff.formats.designs.openrocket import Design
 from tipoff.scenes.parts import usual
 from tipoff.scenes.parts.profiles import PROFILES
-from tipoff.scenes.scene import CATALOG
+from tipoff.scenes.reading import CATALOG, FORMAT
 from tipoff.studies.new_scene import from_catalogue
 
 _CENTRE, _REAR = 0.46875, 0.0625  # of the length, as on the scene rocket_rail
@@ -21,6 +21,7 @@ _INCLINATION, _ERROR = 85.0, 0.5  # deg
 _TEXT = """\
 # A rocket with two rail buttons. Places count from its tail: write yours. provenance says what is given and assumed.
 # "tipoff scenes --show {name}.toml" writes out pads, profile, inertia and all else that follows.
+format = {format}
 name = {named}
 origin = "tail"
 gravity = {{ inclination = "{inclination:g} deg" }}  # of the rail
@@ -66,6 +67,7 @@ def text(
     curve = thrust_curve or {"file": "j360_start.csv"}
     centre, rear = _CENTRE * length, _REAR * length
     return _TEXT.format(
+        format=FORMAT,
         name=name,
         named=tomlkit.item(name).as_string(),
         inclination=_INCLINATION,
@@ -100,6 +102,7 @@ def of_design(name: str, design: Design, curve: str) -> str:
     sources["thrust.arm"] = "assumed: the nozzle at the tail"
     small = design.neck is None or design.neck < PROFILES["1010"].slot
     return _TEXT.format(
+        format=FORMAT,
         name=name,
         named=tomlkit.item(name).as_string(),
         inclination=90.0 - design.rail_angle,

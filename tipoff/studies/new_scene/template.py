@@ -14,6 +14,7 @@ import tomlkit
 
 from tipoff.faults import Fault, SceneError
 from tipoff.scenes.effects.measured import is_of_a_clock, read_curve
+from tipoff.scenes.reading import FORMAT
 
 _WIDTH = 0.2  # m, of the payload of the scene ``clamped``, whose sections are scaled
 _RAILS = 4  # one along each edge of the payload, with one pad at each station
@@ -119,6 +120,7 @@ def text(name: str, numbers: Numbers, folder: Path = Path()) -> str:
         f'\n  {{ start = "{_n(low)} mm", end = "{_n(high)} mm" }},' for low, high in mounts
     )
     return _TEXT.format(
+        format=FORMAT,
         name=name,
         mass=_n(numbers.mass),
         sizes=", ".join(f'"{_n(1e3 * side)} mm"' for side in numbers.size),
@@ -189,6 +191,7 @@ _TEXT = """\
 # A launcher for tipoff. X runs along the rails to their open end, Y and Z across; the origin is the
 # payload's mass centre. Every quantity is text with its unit. An absent table is an absent effect.
 # [provenance] lists the values that "tipoff new" assumed: replace them by your values.
+format = {format}
 name = "{name}"
 description = "Made by tipoff new."
 
