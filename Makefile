@@ -163,7 +163,7 @@ fuzz: $(READY) ## 10,000 mutants of scenes, meshes, solids, tables and logs, the
 	.venv/bin/python -m tests.fuzz $(if $(COUNT),--count $(COUNT))
 
 # The kernels are compiled for a level of processors instead of this one, and lie in the package.
-wheel: $(READY) ## dist/: a wheel with compiled kernels for this Python and Linux on x86-64-v3, and a source distribution (10 minutes)
+wheel: $(READY) ## dist/: a wheel with compiled kernels for this Python and Linux on x86-64-v3, and a source distribution; both checked, and run in a fresh environment (10 minutes)
 	rm -rf build dist tipoff/kernels/made
 	.venv/bin/python -c "from setuptools.build_meta import build_sdist; build_sdist('dist')"
 	NUMBA_CPU_NAME=x86-64-v3 NUMBA_CPU_FEATURES= NUMBA_CACHE_DIR=$(CURDIR)/build/made .venv/bin/python -m tests.warm
@@ -172,7 +172,12 @@ wheel: $(READY) ## dist/: a wheel with compiled kernels for this Python and Linu
 	mkdir tipoff/kernels/made && cp -r build/made/kernels/tipoff.* tipoff/kernels/made
 	.venv/bin/python -c "import sys; from setuptools.build_meta import build_wheel; tag = f'--python-tag=cp{sys.version_info[0]}{sys.version_info[1]}'; \
 	  build_wheel('dist', {'--build-option': [tag, '--plat-name=manylinux_2_28_x86_64']})"
-	rm -rf build tipoff/kernels/made
+	rm -rf tipoff/kernels/made
+	.venv/bin/python -m venv build/fresh
+	build/fresh/bin/python -m pip install --quiet --disable-pip-version-check twine==7.0.0 dist/*.whl
+	build/fresh/bin/twine check --strict dist/*
+	cd build/fresh && bin/tipoff --version && NUMBA_CACHE_DIR=cache bin/tipoff run --scene tiny --condition phi15
+	rm -rf build
 
 clean: ## remove results and caches; the environment stays
 	rm -rf out build docs/_build *.egg-info .pytest_cache .hypothesis
