@@ -20,9 +20,8 @@ _INCLINATION, _ERROR = 85.0, 0.5  # deg
 
 _TEXT = """\
 # A rocket with two rail buttons. Places count from its tail: write yours. provenance says what is given and assumed.
-# "tipoff scenes --show {name}.toml" writes out pads, profile, inertia and all else that follows.
 format = {format}
-name = {named}
+name = {named}  # "tipoff scenes --show {name}.toml" writes out pads, profile, inertia and all else that follows
 origin = "tail"
 gravity = {{ inclination = "{inclination:g} deg" }}  # of the rail
 initial = {{ settled = true }}  # the rocket lies on the rail
