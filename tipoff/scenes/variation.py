@@ -48,6 +48,7 @@ class Variations:
 
     def __init__(self, scene: Scene):
         self.scene = scene
+        self._expanded = expansion.expand(scene._raw, True).tables
         self._adapters: dict[Any, TypeAdapter] = {}
         self._prepared: dict[tuple, tuple[Scene, list[_Leaf]] | None] = {}
 
@@ -107,12 +108,12 @@ class Variations:
             return None
         expanded = raw
         if with_parts:
-            before, after = (expansion.expand(each, True) for each in (self.scene._raw, raw))
+            after = expansion.expand(raw, True)
             if after.faults:
                 return None
             expanded = after.tables
             changed |= dict.fromkeys(
-                name for name in _TABLES if expanded.get(name) != before.tables.get(name)
+                name for name in _TABLES if expanded.get(name) != self._expanded.get(name)
             )
         try:
             tables = {name: self._table(name, expanded) for name in changed}
