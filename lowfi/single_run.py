@@ -6,6 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tipoff.lowfi.contact import wall_ends
+from tipoff.lowfi.contact.compliant import yielding
 from tipoff.lowfi.dynamics import audit, balance, integrate
 from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
@@ -99,6 +100,10 @@ class SingleRun:
             self.message = self._strike()
         elif status in _REASONS:
             self.message = f"{_REASONS[status]}, at {self.loop.clock.now:.6g} s"
+            if status == integrate.UNDERFLOW:
+                loop, pressed = self.loop, self.system.compliance
+                cause = yielding.words(pressed, loop.touching, loop.before)
+                self.message = "; ".join(filter(None, [self.message, cause]))
         elif status == integrate.ENDED:
             self.end = self.taken - 1
 
