@@ -144,6 +144,13 @@ def test_a_table_without_rows_has_heads():
 
 
 def test_document():
+    """The terminal and Markdown make no chart. Control: the page makes it."""
+    made = []
+
+    def curve():
+        made.append(Chart("curve"))
+        return made[0]
+
     parts = [
         "a & b",
         "",
@@ -151,10 +158,12 @@ def test_document():
         Caption("small"),
         Notice("careful"),
         Bullets(["first", "second."]),
-        Figure(Chart("curve"), "the curve"),
+        Figure(curve, "the curve"),
         Fold("detail", [TABLE]),
     ]
+    assert document.terminal(parts) and document.markdown(parts) and not made
     shown = document.html(parts, lambda chart, words: f"<b>{chart.name} {words}</b>")
+    assert len(made) == 1
     assert "<p>a &amp; b</p>" in shown and "<h3>More</h3>" in shown
     assert "<li>First.</li><li>Second.</li>" in shown and "<b>curve the curve</b>" in shown
     assert shown.count("<details>") == 1 and "+1.23" in shown and "<p></p>" not in shown

@@ -123,7 +123,7 @@ def figures(found: Tails) -> list[Figure]:
         fine=1e3 * found.fine_element_size_m,
         count=found.fine,
     )
-    return [Figure(Chart("ladder", [panel], height=420), caption)]
+    return [Figure(lambda: Chart("ladder", [panel], height=420), caption)]
 
 
 def _points(rows: list[ByRung], error: str, name: str, colour: str, marker: str) -> Line:

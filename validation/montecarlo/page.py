@@ -54,12 +54,12 @@ _DIFFERENT = 0.01  # probability by chance, below which two readings are called 
 def figures(found: MonteCarlo) -> list[Figure]:
     """Each figure with its caption."""
     made = [
-        Figure(_histograms(found), _HISTOGRAMS.format(paper_cases=found.paper_cases)),
-        Figure(_convergence(found), _CONVERGENCE),
+        Figure(lambda: _histograms(found), _HISTOGRAMS.format(paper_cases=found.paper_cases)),
+        Figure(lambda: _convergence(found), _CONVERGENCE),
     ]
     models = found.models
     if models and models.quantities:
-        made.append(Figure(_models(models), _MODELS.format(cases=models.cases)))
+        made.append(Figure(lambda: _models(models), _MODELS.format(cases=models.cases)))
     return made
 
 

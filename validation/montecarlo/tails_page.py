@@ -58,7 +58,9 @@ def figures(found: Tails) -> list[Figure]:
 def figure(found: Tails) -> Figure:
     """Draws of both models, case by case and as quantiles."""
     panels = [*map(_scatter, _rates(found)), *map(_quantiles, _rates(found))]
-    return Figure(Chart("tails", panels, columns=3, height=300), _CAPTION.format(**vars(found)))
+    return Figure(
+        lambda: Chart("tails", panels, columns=3, height=300), _CAPTION.format(**vars(found))
+    )
 
 
 def draw(found: Tails) -> list[Part]:

@@ -124,8 +124,8 @@ def figures(found: dict) -> tuple[Figure, Figure]:
         _against("54 deviations, deg/s", printed.deviations(), deviations),
     ]
     return (
-        Figure(Chart("paper", traded, columns=3), _TRADED),
-        Figure(Chart("paper_tables", against, columns=2), _BESIDE),
+        Figure(lambda: Chart("paper", traded, columns=3), _TRADED),
+        Figure(lambda: Chart("paper_tables", against, columns=2), _BESIDE),
     )
 
 

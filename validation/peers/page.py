@@ -56,7 +56,7 @@ def parts(peers: list[dict]) -> list[Part]:
             found += [Heading(case["title"]), _table(peer, case)]
     chart = picture(peers)
     return (
-        [*found, Heading("Work and precision"), Figure(chart, _CAPTION), equal_error(peers)]
+        [*found, Heading("Work and precision"), Figure(lambda: chart, _CAPTION), equal_error(peers)]
         if chart.panels
         else found
     )

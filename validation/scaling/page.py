@@ -52,7 +52,10 @@ _TIMES = (
 
 def draw(found: Scaling) -> list[Part]:
     """The picture and the tables."""
-    return [Figure(picture(found), CAPTION.format(condition=found.condition)), *tables(found)]
+    return [
+        Figure(lambda: picture(found), CAPTION.format(condition=found.condition)),
+        *tables(found),
+    ]
 
 
 def picture(found: Scaling) -> Chart:

@@ -37,7 +37,7 @@ def parts(
     return [
         "Conditions judged as distributions over neighbours within "
         f"±{1e6 * distance:g} µm: {sentence(found)}.",
-        Figure(picture(shown, name), caption),
+        Figure(lambda: picture(shown, name), caption),
         summary(found, name),
         Fold("Every quantile of every rate", [quantiles(found)]),
     ]

@@ -37,7 +37,7 @@ def draw(page: "Page") -> list[Part]:
     found = page.result(stage.STAGE)
     if found is None or not found.growth:
         return []
-    return [Figure(picture(found.growth), _SEPARATION), *tables(found.growth)]
+    return [Figure(lambda: picture(found.growth), _SEPARATION), *tables(found.growth)]
 
 
 def picture(found: Sequence[Growth]) -> Chart:

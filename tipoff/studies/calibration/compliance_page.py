@@ -28,7 +28,7 @@ def draw(found: Compliance) -> list[Part]:
         return [Missing("No contact: no compliance.")]
     caption = _CAPTION.format(size=1e3 * found.element_size_m)
     notes = (f"Elements: {found.elements['words']}.",) if found.elements else ()
-    return [Figure(picture(under), caption), replace(table(under), notes=notes)]
+    return [Figure(lambda: picture(under), caption), replace(table(under), notes=notes)]
 
 
 def picture(found: UnderPad) -> Chart:

@@ -29,7 +29,9 @@ _METHOD = (
 def draw(found: Convergence) -> list[Part]:
     """The figure, the sentences, and the tables."""
     chart = picture(found)
-    figure = [Figure(chart, _RATES.format(condition=found.condition))] if chart.panels else []
+    figure = (
+        [Figure(lambda: chart, _RATES.format(condition=found.condition))] if chart.panels else []
+    )
     return [*figure, Bullets(sentences(found)), *tables(found), *_changed(found)]
 
 

@@ -49,7 +49,7 @@ def draw(found: Cost) -> list[Part]:
     columns = (*_POINTS, "integration_error_deg_s")
     return [
         *_unranked(found),
-        Figure(picture(found), _ERRORS.format(condition=found.condition)),
+        Figure(lambda: picture(found), _ERRORS.format(condition=found.condition)),
         Table.of_records(best, *_POINTS, title=title, kind=Point),
         Table.of_records(found.matched, *_MATCHES, title=matched, kind=Match),
         Fold(

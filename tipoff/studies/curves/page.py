@@ -63,7 +63,7 @@ def figures(found: Compared) -> tuple[Figure]:
         Panel(title, _TIME, "rate (deg/s)", _lines(found, own)) for title, own in rates.items()
     ]
     caption = _CAPTION.format(reference=found.reference)
-    return (Figure(Chart("curves", panels, columns=2, height=260), caption),)
+    return (Figure(lambda: Chart("curves", panels, columns=2, height=260), caption),)
 
 
 def _lines(found: Compared, curves: Iterable[tuple[str, Drawn, Sequence[float]]]) -> list[Line]:

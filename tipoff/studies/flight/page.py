@@ -112,11 +112,14 @@ def _cases(found: Flight) -> Table:
 def figures(found: Flight) -> list[Figure]:
     """Charts with their captions."""
     curves = found.curves
-    drawn = [Figure(_paths(curves, found.flight), _PATHS), Figure(_axes(curves), _AXES)]
+    drawn = [
+        Figure(lambda: _paths(curves, found.flight), _PATHS),
+        Figure(lambda: _axes(curves), _AXES),
+    ]
     if near := [curve for curve in curves if curve.clearance_s]:
-        drawn.append(Figure(_clearance(near), _CLEARANCE))
+        drawn.append(Figure(lambda: _clearance(near), _CLEARANCE))
     if found.cases.points_m:
-        drawn.append(Figure(_scatter(found.cases), _SCATTER))
+        drawn.append(Figure(lambda: _scatter(found.cases), _SCATTER))
     return drawn
 
 

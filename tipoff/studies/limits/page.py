@@ -85,9 +85,9 @@ def figures(found: Limits) -> list[Figure]:
     if drawn:
         panels = [_panel(row, found) for row in drawn]
         caption = _CURVES.format(known=_known(found), **vars(found))
-        shown.append(Figure(Chart("limits-curves", panels, columns=3, height=260), caption))
-    if found.map:
-        shown.append(Figure(_map(found.map, found.probability), _MAP))
+        shown.append(Figure(lambda: Chart("limits-curves", panels, columns=3, height=260), caption))
+    if pair := found.map:
+        shown.append(Figure(lambda: _map(pair, found.probability), _MAP))
     return shown
 
 

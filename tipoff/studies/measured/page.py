@@ -106,8 +106,8 @@ def _of_tests(found: Measurements) -> tuple[Figure, Figure]:
         vary=found.errors,
     )
     return (
-        Figure(Chart("measured-rates", panels, columns=2, height=250), _RATES),
-        Figure(Chart("measured-cloud", _clouds(found), columns=2, height=380), words),
+        Figure(lambda: Chart("measured-rates", panels, columns=2, height=250), _RATES),
+        Figure(lambda: Chart("measured-cloud", _clouds(found), columns=2, height=380), words),
     )
 
 

@@ -71,10 +71,15 @@ class Bullets:
 
 @dataclass(frozen=True)
 class Figure:
-    """A chart and its caption."""
+    """A chart and its caption. Only what shows the chart calls ``make``: the terminal does not."""
 
-    chart: Chart | Picture
+    make: Callable[[], Chart | Picture]
     caption: str
+
+    @property
+    def chart(self) -> Chart | Picture:
+        """The chart, made now."""
+        return self.make()
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ _SETTLED = (
 def thrust(page: "Page") -> list[Part]:
     """Thrust over time, and its facts."""
     caption = "Thrust over time, the same in all models."
-    return [Figure(figures.thrust_curve(page.scene), caption), thrust_facts(page.scene)]
+    return [Figure(lambda: figures.thrust_curve(page.scene), caption), thrust_facts(page.scene)]
 
 
 def curves(page: "Page") -> list[Part]:
@@ -62,7 +62,7 @@ def curves(page: "Page") -> list[Part]:
     if not names:
         return [page.missing("highfi", "highfi")]
     caption = _CURVES if page.runs.calibrated else f"{_CURVES} There are no runs with springs."
-    return [Figure(figures.figure6(page.runs, names), caption)]
+    return [Figure(lambda: figures.figure6(page.runs, names), caption)]
 
 
 def contact(page: "Page") -> list[Part]:
@@ -75,7 +75,7 @@ def _contact(page: "Page", name: str) -> Part:
     if not chart.panels:
         return f"No pad carries more than 1 N, condition {name}."
     return Figure(
-        chart, f"Magnitude of the force on each pad that touches a rail, condition {name}."
+        lambda: chart, f"Magnitude of the force on each pad that touches a rail, condition {name}."
     )
 
 
@@ -86,7 +86,7 @@ def energy(page: "Page") -> list[Part]:
 
 def _energy(page: "Page", name: str) -> Part:
     return Figure(
-        figures.energy_ledgers(page.runs, name),
+        lambda: figures.energy_ledgers(page.runs, name),
         f"Energy ledgers, condition {name}. The transverse ledger leaves out the axial motion, so "
         "that small transverse energies are visible. The dashed residual should be zero.",
     )

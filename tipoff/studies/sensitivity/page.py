@@ -95,9 +95,9 @@ def figures(found: Sensitivity) -> list[Figure]:
     if not rates:
         return []
     return [
-        Figure(_bars(sobol, rates), _BARS),
-        Figure(_map(sobol, shown), _MAP),
-        Figure(_convergence(sobol, rates), _CONVERGENCE),
+        Figure(lambda: _bars(sobol, rates), _BARS),
+        Figure(lambda: _map(sobol, shown), _MAP),
+        Figure(lambda: _convergence(sobol, rates), _CONVERGENCE),
     ]
 
 

@@ -1,6 +1,7 @@
 """Figures of the sweeps: rates over size and direction, growth of the largest rates, and polar maps."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -40,13 +41,13 @@ _MAP = (
 def figures(found: Sweeps) -> list[Figure]:
     """Every figure of the study and its caption."""
     given = found.launches[0]
-    drawn = [Figure(_growth(found), _GROWTH)]
+    drawn = [Figure(lambda: _growth(found), _GROWTH)]
     for factor in given.factors:
         angle = _ANGLE[factor.name]
-        drawn.append(Figure(_scatter(factor), _SCATTER.format(angle=angle)))
+        drawn.append(Figure(partial(_scatter, factor), _SCATTER.format(angle=angle)))
         if sides := factor.sides:
             caption = _MAP.format(unit=factor.unit, angle=angle, jumps=_jumps(sides.jumps_deg_s))
-            drawn.append(Figure(_map(factor, sides, given.faces), caption))
+            drawn.append(Figure(partial(_map, factor, sides, given.faces), caption))
     return drawn
 
 

@@ -25,7 +25,7 @@ _ABOUT = (
 def figure(found: Measurements) -> Figure:
     """The rates of every launch."""
     panels = [panel for row in found.launches for panel in _panels(row)]
-    return Figure(Chart("measured-launches", panels, columns=3, height=250), _CAPTION)
+    return Figure(lambda: Chart("measured-launches", panels, columns=3, height=250), _CAPTION)
 
 
 def _panels(row: Launch) -> list[Panel]:
