@@ -2,6 +2,7 @@
 model."""
 
 import json
+import math
 from dataclasses import replace
 from typing import get_args
 
@@ -20,6 +21,7 @@ from tipoff.studies.commands import options
 from tipoff.studies.single import single
 from tipoff.workspace import models
 from tipoff.workspace.settings import defaults
+from tipoff.workspace.store import Store
 from tipoff.workspace.study import Study, StudyError, numerics_faults
 
 UNKNOWN = replace(
@@ -245,3 +247,34 @@ def test_bad_numerics_are_faults_of_their_options():
         "--tolerance: value: given 1.0, expected 1e-13 to 0.01",
         "--modes: value: given 25, expected a whole number from 0 to 20, or 'auto'",
     ]
+
+
+@pytest.mark.parametrize(
+    "took, is_there, says", [(10.0, False, 1), (10.0, True, 0), (0.1, False, 0)]
+)
+def test_a_long_run_has_its_answer_before_the_runs_for_its_error(
+    study, monkeypatch, capsys, took, is_there, says
+):
+    """Controls: an error that is there, and a short run."""
+
+    class Interrupted(Exception):
+        pass
+
+    def interrupt(*_given):
+        raise Interrupted
+
+    request = study.lowfi("phi15")
+    found = study.store.get(request)
+    assert found.outcome.rate is not None
+    found.cost["wall_s"] = took
+    monkeypatch.setattr(Store, "get", lambda *_: found)
+    monkeypatch.setattr(single.disturbed, "kept", interrupt)
+    if is_there:
+        study.store.path(request).with_suffix(".error.json").write_text("{}")
+    capsys.readouterr()
+    with pytest.raises(Interrupted):
+        single.result_of(study, "phi15", request, single.Detail.ANSWER)
+    said = capsys.readouterr().err
+    assert said.count("deg/s (x, y, z), settled; its error takes") == says
+    x = math.degrees(found.outcome.rate[0])
+    assert not says or f"  rate {x:.3g}, " in said

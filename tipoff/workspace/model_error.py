@@ -38,6 +38,7 @@ from tipoff.workspace.store import Store
 
 RAIL_MESH, MODES, PATTERNS = "rail mesh", "rail modes", "pad patterns"
 CELLS, TOLERANCE = "contact cells", "tolerance"
+_SUFFIX = ".error.json"
 NEIGHBOURS = 8  # of a sensitive run, beside those of ``Disturbed``
 _FACTOR = "rail.mount_stiffness.factor"
 _KEPT: cache.Cache[ModelError] = cache.documents(ModelError.plain, ModelError.of)
@@ -46,11 +47,16 @@ _KEPT: cache.Cache[ModelError] = cache.documents(ModelError.plain, ModelError.of
 def kept(store: Store, run: Run, nominal: Trajectory, moved: Disturbed) -> ModelError:
     """As ``measured``, read from the ``store`` if it is there with the same key, else computed and stored."""
     return _KEPT.get_or_make(
-        store.path(run).with_suffix(".error.json"),
+        store.path(run).with_suffix(_SUFFIX),
         content_hash(run.key, disturbed.plain(moved), sources.of_runs(__name__)),
         "its error is computed again",
         lambda: measured(run, nominal, moved),
     )
+
+
+def is_kept(store: Store, run: Run) -> bool:
+    """Whether a file in the ``store`` has an error of ``run``, maybe of another version."""
+    return store.path(run).with_suffix(_SUFFIX).exists()
 
 
 def measured(run: Run, nominal: Trajectory, moved: Disturbed) -> ModelError:

@@ -26,6 +26,7 @@ from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study, StudyError
 
+_LONG = 3.0  # s of a run, after which its answer comes before the runs for its error
 _COMPARED = (
     "highfi",
     "uncalibrated",
@@ -145,11 +146,14 @@ def result_of(
             own_numerics(numerics) if request.model == COMPLIANT else "",
         )
     moved = error = None
+    own = row(condition, found, study.relative(study.store.path(request)), request)
     if request.fidelity == "lowfi" and found.outcome.rate is not None:
+        if found.cost["wall_s"] > _LONG and not model_error.is_kept(study.store, request):
+            say(text.first(own))
         moved = disturbed.kept(study.store, request, found, study.settings.clearance_change)
         error = model_error.kept(study.store, request, found, moved)
     made = Single(
-        **vars(row(condition, found, study.relative(study.store.path(request)), request)),
+        **vars(own),
         implausible=tuple(request.scene.warnings),
         agreement=agreement,
         disturbed=moved,

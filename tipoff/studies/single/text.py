@@ -96,6 +96,14 @@ def _parts(row: Single) -> list[str]:
     return text
 
 
+def first(row: ConditionRun) -> str:
+    """The rates of a long run before their error is known."""
+    assert row.taken is not None
+    rates = ", ".join(f"{rate:.3g}" for rate in row.taken.rate_deg_s)
+    where = instant.where(row.at)
+    return f"  rate {rates} deg/s (x, y, z), {where}; its error takes about ten more runs"
+
+
 def _stop(scene: Scene) -> list[str]:
     """How long the payload rests on its stop, without a latch that holds it longer."""
     along = launch.of_scene(scene)
