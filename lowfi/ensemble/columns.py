@@ -1,12 +1,14 @@
 """Results of many cases as columns, one row per case."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tipoff.lowfi.ensemble.batch import Case
 from tipoff.mechanics import instant
+
+if TYPE_CHECKING:
+    from tipoff.lowfi.ensemble.batch import Case
 
 # a status is stored as its place in this list
 STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")
@@ -56,7 +58,7 @@ class Columns(NamedTuple):
     steps: np.ndarray  # (n,)
 
 
-def of_cases(cases: Sequence[Case]) -> Columns:
+def of_cases(cases: "Sequence[Case]") -> Columns:
     """Columns of ``cases``."""
 
     def settled(name: str) -> np.ndarray:

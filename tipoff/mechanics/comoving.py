@@ -15,12 +15,14 @@ are those of this frame. If the rails are fixed in space, r_0, V and a are zero,
 acts on the payload (``mechanics.model``).
 """
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tipoff.mechanics.outcome import Motion, Outcome
 from tipoff.mechanics.run_limits import EXIT_WINDOW, SETTLE_WINDOW
+
+if TYPE_CHECKING:
+    from tipoff.mechanics.outcome import Motion, Outcome
 
 
 class Frame(NamedTuple):
@@ -88,7 +90,7 @@ def start(model) -> Start:
     )
 
 
-def motion(seen_from: Frame, moved: Motion) -> Motion:
+def motion(seen_from: Frame, moved: "Motion") -> "Motion":
     """``moved`` in the scene's axes."""
     if seen_from.is_that_of_the_scene:
         return moved
@@ -101,7 +103,7 @@ def motion(seen_from: Frame, moved: Motion) -> Motion:
     )
 
 
-def outcome(seen_from: Frame, found: Outcome) -> Outcome:
+def outcome(seen_from: Frame, found: "Outcome") -> "Outcome":
     """``found`` in the scene's axes."""
     if found.exit_time is None or seen_from.is_that_of_the_scene:
         return found

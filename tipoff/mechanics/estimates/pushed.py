@@ -11,12 +11,14 @@ in a cell of s with constant force.
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tipoff.mechanics.laws.pushers import Pushers
 from tipoff.mechanics.laws.thrust import Curve
+
+if TYPE_CHECKING:
+    from tipoff.mechanics.laws.pushers import Pushers
 
 _CELLS = 1000
 
@@ -29,7 +31,7 @@ class Pushed(NamedTuple):
     speed: np.ndarray  # (k,) m/s
 
 
-def motion(pushers: Pushers, gain: float, pull: float, begun: float) -> Pushed:
+def motion(pushers: "Pushers", gain: float, pull: float, begun: float) -> Pushed:
     """Motion from zero travel at the speed ``begun`` (m/s), with ``gain`` (1/kg) and ``pull``
     (m/s2). A payload that does not start stays where it is."""
     knots = pushers.travel
@@ -45,7 +47,7 @@ def motion(pushers: Pushers, gain: float, pull: float, begun: float) -> Pushed:
     return Pushed(time, travel[:count], speed)
 
 
-def net_force(pushers: Pushers, s: np.ndarray, gain: float, pull: float) -> np.ndarray:
+def net_force(pushers: "Pushers", s: np.ndarray, gain: float, pull: float) -> np.ndarray:
     """Force (n,) N of all springs on the payload at the travel ``s`` (n,) m, up to their strokes."""
     total, moving = np.zeros(np.shape(s)), np.zeros(np.shape(s))
     for travel, force, held, mass in each(pushers):
@@ -55,21 +57,21 @@ def net_force(pushers: Pushers, s: np.ndarray, gain: float, pull: float) -> np.n
     return (total - moving * pull) / (1.0 + gain * moving)
 
 
-def each(pushers: Pushers) -> Iterator[tuple[np.ndarray, np.ndarray, float, float]]:
+def each(pushers: "Pushers") -> Iterator[tuple[np.ndarray, np.ndarray, float, float]]:
     """Travel (k,) m and force (k,) N at the knots, friction (N) and moving mass (kg) of each pusher."""
     for i, (first, after) in enumerate(pairwise(pushers.first)):
         mass = pushers.mass[i] if pushers.mass.size else 0.0
         yield pushers.travel[first:after], pushers.force[first:after], pushers.friction[i], mass
 
 
-def energy(pushers: Pushers) -> float:
+def energy(pushers: "Pushers") -> float:
     """Energy (J) of all springs over their strokes, less the loss by the friction of their pushers."""
     given = float(sum(pushers.energy[pushers.first[1:] - 1]))
     lost = float(sum(held * travel[-1] for travel, _, held, _ in each(pushers)))
     return given - lost
 
 
-def over_time(pushers: Pushers, gain: float, pull: float, begun: float) -> Curve:
+def over_time(pushers: "Pushers", gain: float, pull: float, begun: float) -> Curve:
     """Sum of all forces (N) over time (s) in this motion; of n >= 2 points."""
     found = motion(pushers, gain, pull, begun)
     before = net_force(pushers, found.travel, gain, pull)
@@ -83,7 +85,7 @@ def over_time(pushers: Pushers, gain: float, pull: float, begun: float) -> Curve
     return Curve(times, forces)
 
 
-def impulses(pushers: Pushers, gain: float, pull: float, begun: float) -> np.ndarray:
+def impulses(pushers: "Pushers", gain: float, pull: float, begun: float) -> np.ndarray:
     """Impulse (n,) N s of each spring in this motion."""
     found = motion(pushers, gain, pull, begun)
     middle = 0.5 * (found.travel[1:] + found.travel[:-1])

@@ -11,27 +11,30 @@ platform, payload and platform fall alike, so nothing presses the payload on a s
 """
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tipoff.mechanics.estimates import pushed
-from tipoff.mechanics.estimates.launch import Launch
 from tipoff.mechanics.laws import thrust as thrust_law
+
+if TYPE_CHECKING:
+    from tipoff.mechanics.estimates.launch import Launch
 
 HOP = 1e-4  # m
 
 
-def is_there(launch: Launch) -> bool:
+def is_there(launch: "Launch") -> bool:
     """Whether the payload rests on a stop at ignition."""
     return launch.pull < 0.0 and launch.rests
 
 
-def weight(launch: Launch) -> float:
+def weight(launch: "Launch") -> float:
     """Force (N) of the body forces on the payload, back along fixed rails."""
     return -launch.mass * launch.pull
 
 
-def release_time(launch: Launch) -> float:
+def release_time(launch: "Launch") -> float:
     """Time (s) at which neither a latch nor a stop holds the payload any more; infinite if the thrust is
     too small."""
     latched = launch.latched

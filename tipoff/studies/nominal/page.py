@@ -1,16 +1,19 @@
 """The answer of the scene itself: the first figures of the page, and the first lines of the terminal."""
 
 import math
+from typing import TYPE_CHECKING
 
 from tipoff.mechanics import instant
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.run_limits import EXIT_WINDOW, SETTLE_WINDOW
 from tipoff.studies.nominal.spread import QUANTITIES, Range, Spread
-from tipoff.studies.nominal.stage import Nominal
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
 from tipoff.studies.render.document import Caption, KeyFigures, Part
 from tipoff.studies.render.uncertain import LEAST, SHARE, STEPS, number, range_of, rounded
 from tipoff.workspace.words import counted
+
+if TYPE_CHECKING:
+    from tipoff.studies.nominal.stage import Nominal
 
 _MEANINGS = {
     "rate_x_deg_s": "rate about X, roll",
@@ -25,12 +28,12 @@ _NO_ERRORS = (
 )
 
 
-def draw(found: Nominal) -> list[Part]:
+def draw(found: "Nominal") -> list[Part]:
     """The values with their ranges in large type, and their explanation."""
     return [KeyFigures(figures(found)), Caption(" ".join(f"{line}." for line in notes(found)))]
 
 
-def figures(found: Nominal) -> list[tuple[str, str]]:
+def figures(found: "Nominal") -> list[tuple[str, str]]:
     """(value with its unit, meaning and range) of each quantity."""
     return [
         (
@@ -45,12 +48,12 @@ def _meaning(item: Quantity) -> str:
     return _MEANINGS.get(item.name, item.label)
 
 
-def _values(found: Nominal) -> dict[str, float] | None:
+def _values(found: "Nominal") -> dict[str, float] | None:
     """The values of the finite elements, or of the surrogate if these did not settle."""
     return found.answer[FINITE_ELEMENTS] or found.answer[COMPLIANT]
 
 
-def _shown(item: Quantity, found: Nominal) -> str:
+def _shown(item: Quantity, found: "Nominal") -> str:
     """The value as text, rounded to its range, or without a range to the difference of both models."""
     values = _values(found)
     assert values is not None
@@ -76,7 +79,7 @@ def _text(ends: Range) -> str:
     return range_of(ends.low, ends.high)
 
 
-def notes(found: Nominal) -> list[str]:
+def notes(found: "Nominal") -> list[str]:
     """Sentences on the values, the difference of both models, and the range."""
     reference, surrogate = (found.answer[name] for name in (FINITE_ELEMENTS, COMPLIANT))
     statuses = {row.model: row.status for row in found.rows}
@@ -99,7 +102,7 @@ def notes(found: Nominal) -> list[str]:
     return [*said, *_of_spread(found.spread)]
 
 
-def _when(found: Nominal) -> str:
+def _when(found: "Nominal") -> str:
     if found.at == instant.EXIT:
         return f"over {1e3 * EXIT_WINDOW:g} ms after the exit, {found.at_why}"
     return f"over {1e3 * SETTLE_WINDOW:g} ms after exit and burnout"
@@ -129,7 +132,7 @@ def _of_spread(spread: Spread | None) -> list[str]:
     return said
 
 
-def lines(found: Nominal) -> list[str]:
+def lines(found: "Nominal") -> list[str]:
     """The values with their ranges for the terminal, one line for each quantity."""
     if _values(found) is None:
         return notes(found)
