@@ -74,7 +74,7 @@ def test_every_quantity_of_the_catalogue_has_the_unit_on_the_page(scene):
     """pint knows the dimension of what a scene states. Control: the unit of another key."""
     units, registry = _units(), pint.UnitRegistry()
     raw = tomllib.loads((CATALOG / f"{scene}.toml").read_text(encoding="utf-8"))
-    apart = ("conditions", "provenance", "agreement", "extends")
+    apart = ("format", "conditions", "provenance", "agreement", "extends")
     stated = {key: item for key, item in raw.items() if key not in apart}
     checked = 0
     for key, item in _quantities(stated):
