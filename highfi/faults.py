@@ -76,8 +76,8 @@ def _strike(stepper: Stepper) -> str:
 
 
 def _approach_speed(stepper: Stepper) -> float:
-    """Upper bound (m/s) of the present speed across the rail at which a pad and a point of a wall
-    approach each other; zero without contact."""
+    """Upper bound (m/s) of the speed across the rail at which a pad and a point of a wall approach each
+    other at the last sample; zero without contact."""
     state, system = stepper.state, stepper.setup.system
     payload = system.model.payload
     if system.model.interface_stiffness is None:
@@ -87,10 +87,7 @@ def _approach_speed(stepper: Stepper) -> float:
     spin = np.linalg.norm(payload.inverse_inertia @ (attitude.T @ state.payload.spin))
     reach = np.sqrt((system.faces.centre**2).sum(axis=1).max())
     turn = rotation.single(state.platform.quaternion)
-    _, across_y, across_z = state.payload.velocity @ turn
-    walls = stepper.now.walls
-    y, z = state.velocity.T[1][walls] - across_y, state.velocity.T[2][walls] - across_z
-    moving = magnification(system.surface) * np.sqrt((y * y + z * z).max(initial=0.0))
+    moving = magnification(system.surface) * state.sums[observe.FASTEST]
     return float(max(moving, _approach_of_rigid_part(stepper, turn)) + spin * reach)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tipoff.files import tell
 from tipoff.highfi import result
-from tipoff.highfi.dynamics import observe, resting, substeps, waking
+from tipoff.highfi.dynamics import resting, substeps, waking
 from tipoff.highfi.dynamics.checkpoint import Checkpoint
 from tipoff.highfi.dynamics.settle import settle
 from tipoff.highfi.dynamics.setup import Setup, set_up
@@ -221,7 +221,7 @@ class Loop:
     def _check(self, keep: bool) -> None:
         """Check whether the run may continue; store a sample if ``keep``."""
         stepper, recorded = self.stepper, self.recorded
-        row = observe.sample(stepper.now, self.setup.team, stepper.state, *stepper.moving())
+        row = stepper.sample()
         recorded.message, recorded.scale = fault(stepper, recorded, row)
         if keep and not recorded.message:
             recorded.message = out_of_range(stepper, len(recorded.rows), row)

@@ -113,7 +113,7 @@ def _clear(load):
     for i in range(3):
         load.normal_force[i] = load.friction_force[i] = 0.0
         load.moment[i] = load.moment_on_rail[i] = load.friction_moment[i] = 0.0
-    load.stored = load.damping_rate = 0.0
+    load.stored = load.on_walls = load.damping_rate = 0.0
     load.pressed = load.rubbed = 0
 
 
@@ -228,7 +228,7 @@ def collect_contact(rail, surface, state, active):
         _add_load(load, state.loads[group])
         first = surface.groups.first_node[group]
         for k in range(first, first + active.node_count[group]):
-            _collect_node(rail, state, active.node[k])
+            load.on_walls += _collect_node(rail, state, active.node[k])
     state.evaluated[CONTACT] += load.pressed
     state.evaluated[FRICTION] += load.rubbed
 
@@ -249,9 +249,10 @@ def _add_load(total, part):
 
 @inlined
 def _collect_node(rail, state, node):
-    f = triple(state.contact[node])
+    """Returns u f (J) of the resistance of contact at a node."""
+    f, u = triple(state.contact[node]), triple(state.displacement[node])
     if rail.inverse_mass[node] > 0.0:
-        x, u = triple(rail.points[node]), triple(state.displacement[node])
+        x = triple(rail.points[node])
         moment = rotation.cross((x[0] + u[0], x[1] + u[1], x[2] + u[2]), f)
         for i in range(3):
             state.resistance[node, i] += f[i]
@@ -259,6 +260,7 @@ def _collect_node(rail, state, node):
             state.reaction[3 + i] -= moment[i]
     for i in range(3):
         state.contact[node, i] = 0.0
+    return rotation.dot(u, f)
 
 
 @inlined

@@ -59,6 +59,7 @@ def build(
         groups=group_faces([np.unique(facets[group]) for group in found], clamped),
         border=_border(corners, found),
         thickness=thickness,
+        walls=np.unique(facets),
     )
 
 

@@ -4,8 +4,10 @@
     v(n) = (v(n-1/2) + v(n+1/2)) / 2,     kinetic energy = v(n-1/2) M v(n+1/2) / 2
 
 The second form makes kinetic plus strain energy an exact invariant of central differences for a
-linear system. Plain NumPy: a kernel would not repay its compilation, as a sample is taken once in a
-hundred steps.
+linear system. A kernel makes the sums over nodes, block by block, so that they lose few digits. The
+strain energy u'K u / 2 comes from the present resistance less damping and contact. The bodies are
+plain NumPy: their kernel would not repay its compilation, as a sample is taken once in a hundred
+steps.
 """
 
 import math
@@ -15,7 +17,10 @@ import numpy as np
 
 from tipoff.highfi.dynamics.elastic import elastic_force
 from tipoff.highfi.state import records
+from tipoff.highfi.state.nodes import kicked
+from tipoff.highfi.state.pose import origin_of_frame, triple
 from tipoff.kernels import rotation
+from tipoff.kernels.jit import inlined, kernel
 from tipoff.kernels.memory import zeros
 
 # Slots of the sample vector.
@@ -26,47 +31,51 @@ KINETIC, AXIAL_KINETIC, STRAIN, CONTACT, LINEAR, ANGULAR, IMPULSE = 26, 27, 28, 
 SIZES = 42
 SAMPLE_SIZE = 45
 
+# Slots of ``State.sums``, over the stepped nodes: of m v(n-1/2) v(n+1/2), of u r (J) less damping, of the
+# momenta in frame axes (about the scene origin), and of their magnitudes.
+_KINETIC, _STRAIN, _LINEAR, _ANGULAR, _SIZES = 0, 1, 2, 5, 8
+FASTEST = 11  # m/s across the rail, of a wall node from the payload half a step before
+SUMS_SIZE = 12
+
 
 class Moving(NamedTuple):
-    """Copy of all values that a kick changes."""
+    """Copy of the values of bodies that a kick changes."""
 
     velocity: np.ndarray  # (3,) m/s, of the payload
     spin: np.ndarray  # (3,) kg m2/s, of the payload
     platform_velocity: np.ndarray  # (3,) m/s
     platform_spin: np.ndarray  # (3,) kg m2/s
-    nodes: np.ndarray  # (p,3) m/s, those of ``System.nodes``
     rail_momentum: np.ndarray  # (3,) kg m/s
     impulse: np.ndarray  # (6,) N s, N m s
     pushers: np.ndarray  # (4,n) values of n pushers with mass
 
 
-def moving(system, state: records.State) -> Moving:
-    """Copy of the values that a kick changes; of the nodes only ``system.nodes``."""
-    return Moving(*(part.copy(order="K") for part in _changed(system, state)))
+def moving(state: records.State) -> Moving:
+    """Copy of the values of bodies that a kick changes."""
+    return Moving(*(part.copy() for part in _changed(state)))
 
 
-def restore(system, state: records.State, saved: Moving) -> None:
+def restore(state: records.State, saved: Moving) -> None:
     """Restore the values that ``moving`` copied."""
-    for part, value in zip(_changed(system, state), saved):
+    for part, value in zip(_changed(state), saved):
         part[:] = value
 
 
-def _changed(system, state):
+def _changed(state):
     return (
         state.payload.velocity,
         state.payload.spin,
         state.platform.velocity,
         state.platform.spin,
-        state.velocity[system.nodes],
         state.rail_momentum,
         state.impulse,
         state.pushing.inertia.values,
     )
 
 
-def sample(system, team, state: records.State, before: Moving, after: Moving) -> np.ndarray:
+def sample(system, state: records.State, before: Moving, after: Moving) -> np.ndarray:
     """Sample vector (SAMPLE_SIZE,) of the present places and the velocities half a step before and
-    after them."""
+    after them; ``state.sums`` are those of the nodes."""
     row = np.zeros(SAMPLE_SIZE)
     middle = Moving(*(0.5 * (a + b) for a, b in zip(before, after)))
     turn, base = (rotation.single(body.quaternion) for body in (state.payload, state.platform))
@@ -87,8 +96,10 @@ def sample(system, team, state: records.State, before: Moving, after: Moving) ->
         row[PLATFORM_POSITION : PLATFORM_POSITION + 3] -= base @ system.frame.centre
         row[PLATFORM_VELOCITY : PLATFORM_VELOCITY + 3] -= base @ _cross(rate, system.frame.centre)
     row[IMPULSE : IMPULSE + 6] = middle.impulse
-    row[KINETIC], row[AXIAL_KINETIC] = kinetic_energy(system, state, before, after)
-    row[STRAIN], row[CONTACT] = strain(system, state, team), float(state.load[0]["stored"])
+    row[KINETIC], row[AXIAL_KINETIC] = _kinetic_energy(system, state, before, after)
+    load = state.load[0]
+    row[STRAIN] = 0.5 * (state.sums[_STRAIN] - load["on_walls"])
+    row[CONTACT] = load["stored"]
     row[LINEAR : LINEAR + 3], row[ANGULAR : ANGULAR + 3], row[SIZES:] = _momenta(
         system, state, base, middle
     )
@@ -108,16 +119,14 @@ def strain(system, state: records.State, team) -> float:
     return 0.5 * float((state.displacement * force).sum())
 
 
-def kinetic_energy(
+def _kinetic_energy(
     system, state: records.State, before: Moving, after: Moving
 ) -> tuple[float, float]:
     """Kinetic energy (J) of everything, and its axial part, from the velocities half a step before
     and after the present places."""
     payload, frame = system.model.payload, system.frame
     turn, base = (rotation.single(body.quaternion) for body in (state.payload, state.platform))
-    mass = system.moving_mass[system.nodes]
-    nodes = sum((mass * (a * b)).sum() for a, b in zip(before.nodes.T, after.nodes.T))
-    kinetic = 0.5 * (payload.mass * before.velocity @ after.velocity + nodes)
+    kinetic = 0.5 * (payload.mass * before.velocity @ after.velocity + state.sums[_KINETIC])
     kinetic += _spin_energy(turn, payload.inverse_inertia, before.spin, after.spin)
     axial = 0.5 * payload.mass * before.velocity[0] * after.velocity[0]
     if frame is not None:
@@ -140,36 +149,19 @@ def _spin_energy(turn, inverse_inertia, before, after) -> float:
 def _momenta(system, state, base, middle: Moving) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Linear and angular momentum (about the scene origin), summed anew over every node and body, and
     the sums (3,) of the magnitudes of all of them."""
-    part, origin = system.nodes, state.platform.position
-    px, py, pz = (system.moving_mass[part] * component for component in middle.nodes.T)
-    x, y, z = (system.rail.points[part] + state.displacement[part]).T
-    rails = base @ [px.sum(), py.sum(), pz.sum()]
-    turning = base @ [(y * pz - z * py).sum(), (z * px - x * pz).sum(), (x * py - y * px).sum()]
-    if system.frame is not None:
-        origin = origin - base @ system.frame.centre
     own = system.model.payload.mass * middle.velocity
     bodies = [(state.payload.position, own, middle.spin)]
-    linear = own + rails
-    angular = _cross(state.payload.position, own) + middle.spin + turning + _cross(origin, rails)
+    sums = state.sums
+    linear = own + base @ sums[_LINEAR : _LINEAR + 3]
+    angular = base @ sums[_ANGULAR : _ANGULAR + 3] + _cross(state.payload.position, own)
+    angular = angular + middle.spin
     if system.frame is not None:
         carried = system.frame.mass * middle.platform_velocity
         bodies.append((state.platform.position, carried, middle.platform_spin))
         linear = linear + carried
         angular = angular + _cross(state.platform.position, carried) + middle.platform_spin
-    # in the axes of the frame, as the nodes are
-    a, b, c = base.T @ origin
-    parts = [_sizes_of_nodes((x + a, y + b, z + c), (px, py, pz))]
-    parts += [_sizes_of_body(*body) for body in bodies]
-    return linear, angular, np.sum(parts, axis=0)
-
-
-def _sizes_of_nodes(place, momentum) -> tuple[float, float, float]:
-    """Sums over nodes of |p|, |r x p| and |r| |p|, of the components (n,) of each."""
-    (x, y, z), (px, py, pz) = place, momentum
-    own = np.sqrt(px * px + py * py + pz * pz)
-    turning = np.sqrt((y * pz - z * py) ** 2 + (z * px - x * pz) ** 2 + (x * py - y * px) ** 2)
-    reach = np.sqrt(x * x + y * y + z * z)
-    return float(own.sum()), float(turning.sum()), float((reach * own).sum())
+    sizes = [sums[_SIZES : _SIZES + 3], *(_sizes_of_body(*body) for body in bodies)]
+    return linear, angular, np.sum(sizes, axis=0)
 
 
 def _sizes_of_body(place, momentum, spin) -> tuple[float, float, float]:
@@ -182,3 +174,71 @@ def _cross(a, b) -> np.ndarray:
     """Vector product of two triples; numpy's function takes far longer, to identify the axis."""
     (x, y, z), (p, q, r) = a.tolist(), b.tolist()
     return np.array([y * r - z * q, z * p - x * r, x * q - y * p])
+
+
+@inlined
+def sum_nodes(constants, state, pose, acceleration):
+    """Fill ``state.sums`` but ``FASTEST``; ``acceleration`` (m/s2) of the nodes by the body force, in
+    frame axes."""
+    rail, sums, dt = constants.rail, state.sums, constants.dt
+    damps = state.history.loss.size > 0
+    origin = origin_of_frame(constants.frame, state.platform, pose.frame)
+    ox, oy, oz = rotation.unrotate(pose.frame, origin)
+    sums[:FASTEST] = 0.0
+    ax, ay, az = acceleration
+    for k in range(state.stepped.in_use[0]):
+        block = state.stepped.block[k]
+        kinetic, strain, own, orbits, reached = 0.0, 0.0, 0.0, 0.0, 0.0
+        px, py, pz, hx, hy, hz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for node in range(np.uint64(rail.blocks[block]), np.uint64(rail.blocks[block + 1])):
+            inverse = rail.inverse_mass[node]
+            if inverse > 0.0:
+                m, u, r = (
+                    rail.mass[node],
+                    triple(state.displacement[node]),
+                    triple(state.resistance[node]),
+                )
+                v, x = triple(state.velocity[node]), triple(rail.points[node])
+                wx = kicked(v[0], r[0], inverse, ax, dt)
+                wy = kicked(v[1], r[1], inverse, ay, dt)
+                wz = kicked(v[2], r[2], inverse, az, dt)
+                kinetic += m * (v[0] * wx + v[1] * wy + v[2] * wz)
+                strain += rotation.dot(u, r)
+                if damps:
+                    strain -= rotation.dot(u, triple(state.history.force[node]))
+                p = 0.5 * m * (v[0] + wx), 0.5 * m * (v[1] + wy), 0.5 * m * (v[2] + wz)
+                far = ox + x[0] + u[0], oy + x[1] + u[1], oz + x[2] + u[2]
+                h, size = rotation.cross(far, p), np.sqrt(rotation.dot(p, p))
+                px, py, pz, hx, hy, hz = (
+                    px + p[0],
+                    py + p[1],
+                    pz + p[2],
+                    hx + h[0],
+                    hy + h[1],
+                    hz + h[2],
+                )
+                own += size
+                orbits += np.sqrt(rotation.dot(h, h))
+                reached += np.sqrt(rotation.dot(far, far)) * size
+        sums[_KINETIC] += kinetic
+        sums[_STRAIN] += strain
+        sums[_LINEAR] += px
+        sums[_LINEAR + 1] += py
+        sums[_LINEAR + 2] += pz
+        sums[_ANGULAR] += hx
+        sums[_ANGULAR + 1] += hy
+        sums[_ANGULAR + 2] += hz
+        sums[_SIZES] += own
+        sums[_SIZES + 1] += orbits
+        sums[_SIZES + 2] += reached
+
+
+@kernel
+def find_fastest(walls, state, velocity):
+    """Set ``FASTEST``; ``velocity`` (m/s) of the payload in frame axes."""
+    largest = 0.0
+    for k in range(walls.size):
+        node = walls[k]
+        y, z = state.velocity[node, 1] - velocity[1], state.velocity[node, 2] - velocity[2]
+        largest = max(largest, y * y + z * z)
+    state.sums[FASTEST] = np.sqrt(largest)

@@ -16,7 +16,7 @@ import numpy as np
 
 from tipoff.highfi.dynamics.step_limit import of_pushers
 from tipoff.highfi.dynamics.step_size import Stepping, raster_steps
-from tipoff.highfi.dynamics.system import System, moving_walls
+from tipoff.highfi.dynamics.system import System, with_moving_walls
 from tipoff.highfi.mesh import pieces
 from tipoff.highfi.state import records
 from tipoff.highfi.statics.inertial import TERMS, Deflection, deflections
@@ -132,7 +132,7 @@ def view(system: System, rails: Rails, rests: np.ndarray) -> System:
     return system._replace(
         moving_mass=moving,
         nodes=slice(int(used[0]), int(used[-1]) + 1) if used.size else slice(0, 0),
-        walls=moving_walls(system.surface, moving),
+        surface=with_moving_walls(system.surface, moving),
         drive=system.drive._replace(moving_mass=float(moving.sum())),
         frame=None if system.frame is None else _with(system, system.moving_mass - moving),
     )

@@ -42,6 +42,7 @@ from tipoff.highfi.dynamics.loads import (
     thrust_load,
 )
 from tipoff.highfi.dynamics.mounts import collect_mounts
+from tipoff.highfi.dynamics.observe import find_fastest, sum_nodes
 from tipoff.highfi.dynamics.pushers import begin_pushers, kick_pushers, load_pushers
 from tipoff.highfi.state.nodes import kick_nodes
 from tipoff.highfi.state.pose import drift_body, less, plus, pose_in_frame, small_turn, triple
@@ -50,13 +51,13 @@ from tipoff.highfi.state.threads import barrier, reset_queue
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import entry, inlined, kernel
 
-EVALUATE, KICK, OPEN, ADVANCE = range(4)
+EVALUATE, KICK, OBSERVE, OPEN, ADVANCE = range(5)
 
 
 class Task(NamedTuple):
     """Task of ``perform``."""
 
-    kind: int  # EVALUATE, KICK, OPEN or ADVANCE
+    kind: int  # EVALUATE, KICK, OBSERVE, OPEN or ADVANCE
     first_step: int  # number of the step to begin with, whose places are the present ones
     steps: int = 0  # to advance by at most, of length ``Constants.dt``
     span: float = 0.0  # s, of a kick
@@ -69,17 +70,19 @@ def perform(constants, state, active, book, team, thread, task):
     """Do the ``task`` as one ``thread`` of ``team``.
 
     EVALUATE: all forces at the present places of rails at rest in their frame. KICK: advance all
-    velocities, but no place, by the present forces. OPEN: begin the ``book`` (``mechanics.ending``)
-    at ignition, with the velocities of half a step before. ADVANCE: take steps; call it in all
-    threads of the team. It returns early, after whole steps of ``Constants.substeps``, if a pad
-    comes near a rail at rest or friction damps a node faster than ``Task.most_damping``. Returns
-    the number of steps, and the largest friction damping / mass (1/s) of a node before any of them.
+    velocities, but no place, by the present forces. OBSERVE: advance those
+    of the bodies only, and fill ``State.sums``. OPEN: begin the
+    ``book`` (``mechanics.ending``) at ignition, with the velocities of half a step before. ADVANCE:
+    take steps; call it in all threads of the team. It returns early, after whole steps of
+    ``Constants.substeps``, if a pad comes near a rail at rest or friction damps a node faster than
+    ``Task.most_damping``. Returns the number of steps, and the largest friction damping / mass
+    (1/s) of a node before any of them.
     """
     if task.kind == ADVANCE:
         return _advance(constants, state, active, book, team, thread, task)
     if task.kind == EVALUATE:
         _evaluate(constants, state, active, team)
-    elif task.kind == KICK:
+    elif task.kind == KICK or task.kind == OBSERVE:
         _kick(constants, state, task)
     else:
         begin(constants, state, book)
@@ -104,12 +107,17 @@ def _evaluate(constants, state, active, team):
 def _kick(constants, state, task):
     pose = pose_in_frame(state, constants.payload, constants.frame)
     unit = constants.dt / task.stride
+    if task.kind == OBSERVE:
+        find_fastest(constants.surface.walls, state, pose.velocity)
     thrust = thrust_load(constants, state, task.first_step * unit)
     _kick_bodies(constants, state, pose, thrust, task.span)
     hold(constants.hold_down, constants, state, pose, task.first_step * unit, task.span)
     acceleration = body_force_in_frame(constants.body_force, state, pose)
-    inverse_mass = constants.rail.inverse_mass
-    kick_nodes(inverse_mass, state.velocity, state.resistance, acceleration, task.span)
+    if task.kind == OBSERVE:
+        sum_nodes(constants, state, pose, acceleration)
+    else:
+        inverse_mass = constants.rail.inverse_mass
+        kick_nodes(inverse_mass, state.velocity, state.resistance, acceleration, task.span)
 
 
 @inlined

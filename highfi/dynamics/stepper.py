@@ -7,7 +7,7 @@ import numpy as np
 
 from tipoff.highfi.dynamics import ending, jolts, observe
 from tipoff.highfi.dynamics.setup import Setup
-from tipoff.highfi.dynamics.step import ADVANCE, EVALUATE, KICK, OPEN, Task, perform
+from tipoff.highfi.dynamics.step import ADVANCE, EVALUATE, KICK, OBSERVE, OPEN, Task, perform
 from tipoff.highfi.dynamics.system import System, initial_state
 from tipoff.highfi.state import records
 from tipoff.highfi.state.threads import Team
@@ -78,11 +78,12 @@ class Stepper:
         return self.state.displacement if warm is None else self.state.displacement + warm
 
     def moving(self) -> tuple[observe.Moving, observe.Moving]:
-        """Velocities half a step before and after the present places."""
-        before = observe.moving(self.now, self.state)
-        self.kick(self.step)
-        after = observe.moving(self.now, self.state)
-        observe.restore(self.now, self.state, before)
+        """Velocities of the bodies half a step before and after the present places; sums over the
+        nodes are then in ``State.sums``."""
+        before = observe.moving(self.state)
+        self._perform(OBSERVE, span=self.step)
+        after = observe.moving(self.state)
+        observe.restore(self.state, before)
         return before, after
 
     def constants(self) -> records.Constants:
@@ -122,6 +123,11 @@ class Stepper:
         """Advance only the velocities of nodes and bodies, over ``span`` (s), by the present
         forces."""
         self._perform(KICK, span=span)
+
+    def sample(self) -> np.ndarray:
+        """Sample vector (SAMPLE_SIZE,) of the present places (``observe``)."""
+        before, after = self.moving()
+        return observe.sample(self.now, self.state, before, after)
 
     def open_book(self) -> None:
         """Begin the book at ignition, with the velocities of half a step before."""
@@ -164,7 +170,7 @@ class Stepper:
 
     def _kinetic_energy(self) -> np.ndarray:
         """Kinetic energy (J) of the scheme: total and axial part (``TOTAL`` and ``AXIAL``)."""
-        return np.array(observe.kinetic_energy(self.now, self.state, *self.moving()))
+        return self.sample()[[observe.KINETIC, observe.AXIAL_KINETIC]]
 
     def _perform(self, kind: int, thread: int = 0, steps: int = 0, span: float = 0.0):
         task = Task(

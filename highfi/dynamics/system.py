@@ -6,7 +6,7 @@ import numpy as np
 
 from tipoff.faults import Fault, SceneError
 from tipoff.highfi.contact import surface
-from tipoff.highfi.dynamics import mounts, pushers
+from tipoff.highfi.dynamics import mounts, observe, pushers
 from tipoff.highfi.extruded import mesh as extruded
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
@@ -39,7 +39,6 @@ class System(NamedTuple):
     rail: records.Rail
     moving_mass: np.ndarray  # (n,) kg, of the nodal arrays, zero if clamped or at rest
     nodes: slice  # part of the nodal arrays that contains all stepped nodes
-    walls: np.ndarray  # numbers of the wall nodes that move in the frame
     surface: records.Surface
     faces: Faces
     frame: records.Frame | None  # None: fixed platform
@@ -87,8 +86,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
         rail=rail,
         moving_mass=masses,
         nodes=slice(0, masses.size),
-        walls=moving_walls(walls, masses),
-        surface=walls,
+        surface=with_moving_walls(walls, masses),
         faces=faces,
         frame=frame,
         drive=drive,
@@ -114,10 +112,10 @@ def _latch_from_origin(found: HoldDown | None, offset: np.ndarray) -> HoldDown |
     return found._replace(line=(y, z))
 
 
-def moving_walls(surfaces: records.Surface, moving_mass: np.ndarray) -> np.ndarray:
-    """Numbers of the nodes of the walls that have a ``moving_mass`` (n,) kg."""
+def with_moving_walls(surfaces: records.Surface, moving_mass: np.ndarray) -> records.Surface:
+    """``surfaces``, of whose wall nodes those move that have a ``moving_mass`` (n,) kg."""
     found = np.unique(surfaces.facets)
-    return found[moving_mass[found] > 0.0]
+    return surfaces._replace(walls=found[moving_mass[found] > 0.0])
 
 
 def _warmed(
@@ -289,6 +287,7 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
         history=_history(system.rail, nodes, blocks),
         pushing=pushers.new_state(system.pushers),
         holding=np.zeros(1),
+        sums=np.zeros(observe.SUMS_SIZE),
         evaluated=np.zeros(len(records.COUNTED), dtype=np.int64),
     )
     return state, _active(system, groups)

@@ -89,7 +89,7 @@ def _leaves_out(rails: Rails, stepper: Stepper) -> float:
 def _note_rates(stepper: Stepper) -> float:
     """Store the motion of the platform of half a step ago; returns its time (s)."""
     now, state, found = stepper.now, stepper.state, stepper.jolts.rates
-    found[:-1] = jolts.rates(now, state, observe.moving(now, state))
+    found[:-1] = jolts.rates(now, state, observe.moving(state))
     found[-1] = stepper.time - 0.5 * stepper.step
     return float(found[-1])
 

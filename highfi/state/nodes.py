@@ -24,13 +24,14 @@ def kick_nodes(inverse_mass, velocity, resistance, acceleration, dt):
 @kernel
 def _kick_component(inverse_mass, velocity, resistance, acceleration, dt):
     for node in range(inverse_mass.size):
-        velocity[node] = _kicked(
+        velocity[node] = kicked(
             velocity[node], resistance[node], inverse_mass[node], acceleration, dt
         )
 
 
 @kernel
-def _kicked(velocity, resistance, inverse_mass, acceleration, dt):
+def kicked(velocity, resistance, inverse_mass, acceleration, dt):
+    """One component of the velocity of a node after a kick."""
     return (
         velocity + dt * (acceleration - inverse_mass * resistance)
         if inverse_mass > 0.0
@@ -56,7 +57,7 @@ def _move_component(rail, state, i, dt, first, last):
     inverse_mass, acceleration = rail.inverse_mass, state.motion.acceleration[i]
     u, w, f = state.displacement.T[i], state.velocity.T[i], state.resistance.T[i]
     for node in range(first, last):
-        w[node] = _kicked(w[node], f[node], inverse_mass[node], acceleration, dt)
+        w[node] = kicked(w[node], f[node], inverse_mass[node], acceleration, dt)
         u[node] = u[node] + dt * w[node] if inverse_mass[node] > 0.0 else 0.0
 
 
@@ -77,9 +78,9 @@ def _move_in_frame(rail, state, centre, dt, first, last):
     for node in range(first, last):
         m = inverse_mass[node]
         px, py, pz = (
-            _kicked(p[node], a[node], m, gx, dt),
-            _kicked(q[node], b[node], m, gy, dt),
-            _kicked(r[node], c[node], m, gz, dt),
+            kicked(p[node], a[node], m, gx, dt),
+            kicked(q[node], b[node], m, gy, dt),
+            kicked(r[node], c[node], m, gz, dt),
         )
         dx, dy, dz = u[node] + dt * (px - fx), v[node] + dt * (py - fy), w[node] + dt * (pz - fz)
         ax, ay, az = x[node] - ox + dx, y[node] - oy + dy, z[node] - oz + dz

@@ -140,6 +140,7 @@ class Surface(NamedTuple):
     # (f,4) m, smallest and largest X of the wall of each face, then across the rail
     border: np.ndarray
     thickness: float  # m, of the walls
+    walls: np.ndarray  # numbers of the nodes of the walls that move in the frame
 
 
 @by_reference
@@ -287,6 +288,7 @@ class State(NamedTuple):
     history: History
     pushing: Pushing
     holding: np.ndarray  # (1,) N, last force of the hold-down on the payload
+    sums: np.ndarray  # (SUMS_SIZE,) over nodes at the last sample, see ``dynamics.observe``
     evaluated: np.ndarray  # (c,) how often the law of each effect of ``COUNTED`` was evaluated
 
 
@@ -319,6 +321,7 @@ LOAD = np.dtype(
         ("moment_on_rail", float, 3),  # N m, about the frame's origin
         ("friction_moment", float, 3),  # N m, about the payload's mass centre
         ("stored", float),  # J
+        ("on_walls", float),  # J, sum of u f over nodes with the resistance f; of all faces only
         ("damping_rate", float),  # 1/s, largest friction damping / mass of a node
         ("pressed", np.int64),  # cells with contact
         ("rubbed", np.int64),  # cells with friction

@@ -194,14 +194,13 @@ def _elements(loop) -> Callable[[], float]:
 def _sample(loop) -> Callable[[], float]:
     """A call that gives the time (s) of a sample with its checks."""
     from tipoff.highfi import faults
-    from tipoff.highfi.dynamics import observe
 
-    stepper, recorded, team = loop.stepper, loop.recorded, loop.setup.team
+    stepper, recorded = loop.stepper, loop.recorded
 
     def timed() -> float:
         rows, began = len(recorded.rows), time.thread_time()
         for _ in range(_CALLS):
-            row = observe.sample(stepper.now, team, stepper.state, *stepper.moving())
+            row = stepper.sample()
             faults.fault(stepper, recorded, row)
             recorded.add_sample(stepper, row)
         spent = time.thread_time() - began

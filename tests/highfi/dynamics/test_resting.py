@@ -184,8 +184,7 @@ def shaken(numerics: Numerics) -> Loop:
 
 def sampled(loop: Loop) -> np.ndarray:
     """The sample vector of the present state."""
-    stepper = loop.stepper
-    return observe.sample(stepper.now, loop.setup.team, stepper.state, *stepper.moving())
+    return loop.stepper.sample()
 
 
 def centre_of(loop: Loop) -> np.ndarray:
