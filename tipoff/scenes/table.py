@@ -32,6 +32,11 @@ def is_absent(value: Any) -> bool:
     return value is None
 
 
+def is_one(value: object) -> bool:
+    """Whether a factor is left out of a table that is written."""
+    return value == 1.0
+
+
 def is_zero(value: Any) -> bool:
     """Whether a value is zero. A new key whose zero changes nothing is left out of dumps."""
     return value == 0.0

@@ -24,11 +24,11 @@ from tipoff.scenes.effects.measured import (
 from tipoff.scenes.effects.timed import TimedTable
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import below
-from tipoff.scenes.table import is_absent, is_zero, limited
-from tipoff.scenes.units import Force, NonNegativeNumber, Time
+from tipoff.scenes.table import is_absent, is_one, is_zero, limited
+from tipoff.scenes.units import Force, NonNegativeNumber, PositiveNumber, Time
 
 # keys whose effect is in the points
-_READ = {*Choice._fields, "ignition", "remove_offset"}
+_READ = {*Choice._fields, "ignition", "remove_offset", "factor"}
 
 
 class MeasuredTable(TimedTable):
@@ -67,6 +67,8 @@ class MeasuredTable(TimedTable):
     #: Subtracts the readings that are found before ignition and after burn-out, and sets the points
     #: before ignition to zero.
     remove_offset: bool = Field(False, exclude_if=is_zero)
+    #: Multiplies the forces; studies of uncertainty vary it.
+    factor: PositiveNumber = Field(1.0, exclude_if=is_one)
     _curve: MeasuredCurve = PrivateAttr()
     _levels: Levels = PrivateAttr()
     _words: str = PrivateAttr()
@@ -100,7 +102,8 @@ class MeasuredTable(TimedTable):
             curve = load_cell.without_offset(curve, before, after)
         curve = without_baseline(curve, self.baseline)
         self._levels = load_cell.levels(curve)
-        self._curve = from_ignition(curve, self.ignition)
+        time, force = from_ignition(curve, self.ignition)
+        self._curve = MeasuredCurve(time, self.factor * force)
         if self.use == "fit":
             fit = fit_gaussian(self._curve)
             if below(self.fit_impulse_tolerance, abs(fit.impulse_error)):
@@ -138,7 +141,7 @@ class MeasuredTable(TimedTable):
             return None
 
     def curve(self) -> MeasuredCurve:
-        """Measured times (s) and forces (N), without the baseline."""
+        """Measured times (s) and forces (N) without the baseline, times the factor."""
         return self._curve
 
     def levels(self) -> Levels:
@@ -165,7 +168,7 @@ class MeasuredTable(TimedTable):
         return Thrust(None, Curve(self._curve.time, self._curve.force))
 
     def requested(self) -> float:
-        """Impulse (N s) of the measured curve, without the baseline."""
+        """Impulse (N s) of the curve that acts."""
         return float(np.trapezoid(self._curve.force, self._curve.time))
 
     def notes(self) -> list[str]:

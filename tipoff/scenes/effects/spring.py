@@ -24,12 +24,13 @@ from tipoff.mechanics.laws.thrust import Thrust
 from tipoff.scenes.effects.thrust_offset import Misalignment
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import apart, below
-from tipoff.scenes.table import Table, at_least_one, is_absent, is_zero, limited
+from tipoff.scenes.table import Table, at_least_one, is_absent, is_one, is_zero, limited
 from tipoff.scenes.units import (
     Length,
     NonNegativeMass,
     PositiveForce,
     PositiveLength,
+    PositiveNumber,
     PushFriction,
     SpringRate,
 )
@@ -47,6 +48,8 @@ class Spring(Table):
     #: CSV file with the columns travel and force and their units, as in "travel [mm],force [N]";
     #: relative to the scene file.
     file: str | None = None
+    #: Multiplies the force of preload and rate, or of the file; studies of uncertainty vary it.
+    factor: PositiveNumber = Field(1.0, exclude_if=is_one)
     #: Constant friction of the pusher, against its motion.
     friction: PushFriction = 0.0
     #: Mass of the part of the pusher that goes with the payload, up to the end of the stroke.
@@ -80,6 +83,7 @@ class Spring(Table):
     def _starts(cls, friction: float, info: ValidationInfo):
         preload, file = info.data.get("preload"), info.data.get("file")
         first = preload if file is None else float(read_push(file).force[0])
+        first = None if first is None else info.data.get("factor", 1.0) * first
         if first is not None and friction > 0.0 and friction >= first:
             raise ValueError(
                 f"less than the force of {first:g} N at zero travel, or nothing starts"
@@ -109,6 +113,11 @@ class Spring(Table):
         return self
 
     def _made(self) -> Push:
+        travel, force = self._stated()
+        return Push(travel, self.factor * force)
+
+    def _stated(self) -> Push:
+        """Force over travel without the factor."""
         if self.file is not None:
             return read_push(self.file)
         assert self.preload is not None and self.rate is not None and self.stroke is not None

@@ -112,8 +112,8 @@ def _of_spread(spread: Spread | None) -> list[str]:
     if spread is None:
         return [_NO_ERRORS]
     cases, lost = spread.cases, spread.cases - spread.settled
-    keys = ", ".join(dict.fromkeys(key.rpartition(".")[0] or key for key in spread.vary))
-    errors = f"{cases:,} launches of compliant contact with the errors {spread.errors} ({keys})"
+    sizes = ", ".join(f"{name} {words}" for name, words in spread.sizes.items())
+    errors = f"{cases:,} launches of compliant contact with the errors {spread.errors} ({sizes})"
     if spread.ranges is None:
         return [f"No range: {counted(spread.settled, 'case')} of {errors} settled"]
     at = f", {instant.where(spread.at)}" if spread.at == instant.EXIT else ""

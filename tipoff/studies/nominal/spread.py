@@ -15,7 +15,7 @@ import numpy as np
 from tipoff.comparison import order_statistics
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.mechanics.model_names import COMPLIANT
-from tipoff.scenes import uncertainty
+from tipoff.scenes import halving, uncertainty
 from tipoff.scenes.scene import Scene
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.answers import Quantity
@@ -66,12 +66,12 @@ class Range:
 
 @dataclass(frozen=True, kw_only=True)
 class Spread:
-    """``errors``: the file of distributions as named in the scene; ``vary``: its keys; ``at``: the
-    instant of velocity and rates; ``ranges`` by the names of ``QUANTITIES``, None if fewer than 100 of
-    the ``cases`` settled."""
+    """``errors``: the file of distributions as named in the scene; ``sizes``: 95 % of the values of each
+    tolerance (``scenes.halving``); ``at``: the instant of velocity and rates; ``ranges`` by the names of
+    ``QUANTITIES``, None if fewer than 100 of the ``cases`` settled."""
 
     errors: str
-    vary: tuple[str, ...]
+    sizes: dict[str, str]
     seed: int
     cases: int
     settled: int
@@ -100,7 +100,7 @@ def of_scene(study: Study, scene: Scene) -> Spread | None:
     assert scene.studies is not None and scene.studies.errors is not None
     return Spread(
         errors=scene.studies.errors,
-        vary=tuple(stated.vary),
+        sizes={name: halving.words(stated, name) for name in halving.tolerances(stated)},
         seed=stated.seed,
         cases=cases,
         settled=int(found.settled.sum()),
