@@ -7,8 +7,7 @@ from tipoff.highfi.dynamics import ending, monitor, samples
 from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.recorded import Recorded
-from tipoff.mechanics import comoving, ledger, model_names, outcome
-from tipoff.mechanics import ending as books
+from tipoff.mechanics import books, comoving, ledger, model_names, outcome
 from tipoff.mechanics.promises import FINITE_ELEMENTS, broken
 from tipoff.results.trajectory import Trajectory
 

@@ -26,7 +26,7 @@ from tipoff.highfi.rail.memory_check import check_before, check_mesh
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.recorded import Recorded
 from tipoff.highfi.state.threads import processors
-from tipoff.mechanics.ending import DONE, WINDOW, is_left_out
+from tipoff.mechanics.books import DONE, WINDOW, is_left_out
 from tipoff.mechanics.run_limits import SETTLE_WINDOW
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import settled

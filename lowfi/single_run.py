@@ -12,7 +12,7 @@ from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import Numerics, promises_of
 from tipoff.lowfi.preparation import prepare
-from tipoff.mechanics import comoving, ending, outcome, promises
+from tipoff.mechanics import books, comoving, outcome, promises
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import launch, scene_model
@@ -68,7 +68,7 @@ class SingleRun:
             np.zeros((first, SAMPLE_SIZE)),
             np.zeros((first, model.faces.axis.size, 3)),
         )
-        self.loads = ending.no_loads(int(model.faces.guide.max(initial=-1)) + 1)
+        self.loads = books.no_loads(int(model.faces.guide.max(initial=-1)) + 1)
         self.last, self.taken, self.whole, self.message = self.end, 0, False, ""
 
     def begin(self) -> None:
@@ -150,7 +150,7 @@ class SingleRun:
         """Status and outcome of the run so far, in the frame of the solution."""
         if self.message:
             return "diverged", outcome.Outcome()
-        status, found = ending.found(self.loop.book)
+        status, found = books.found(self.loop.book)
         return status, outcome.with_impulse(found, self.model)
 
     def motion(self) -> outcome.Motion:
@@ -172,7 +172,7 @@ class SingleRun:
             message=message,
             **comoving.motion(seen_from, moved)._asdict(),
             pad_force=forces,
-            **ending.named_loads(self.loads[0]),
+            **books.named_loads(self.loads[0]),
             energy=total,
             transverse_energy=across,
             outcome=comoving.outcome(seen_from, result),

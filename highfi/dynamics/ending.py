@@ -14,8 +14,8 @@ from tipoff.highfi.state.pose import triple
 from tipoff.highfi.state.records import Exit
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
-from tipoff.mechanics import ending as books
-from tipoff.mechanics.ending import (
+from tipoff.mechanics import books
+from tipoff.mechanics.books import (
     AT_EXIT,
     ATTITUDE,
     BEFORE,
@@ -43,7 +43,7 @@ def place(system: System) -> Exit:
 
 
 def new_book() -> np.ndarray:
-    """The book (``mechanics.ending``) at the beginning of a run."""
+    """The book (``mechanics.books``) at the beginning of a run."""
     book = np.zeros(books.BOOK_SIZE)
     books.reset(book)
     return book

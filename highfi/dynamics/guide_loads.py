@@ -1,9 +1,9 @@
-"""Largest load of each guide of the reference (``mechanics.ending``), from the forces at each step."""
+"""Largest load of each guide of the reference (``mechanics.books``), from the forces at each step."""
 
 from tipoff.highfi.state.pose import triple
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
-from tipoff.mechanics import ending as books
+from tipoff.mechanics import books
 
 
 @inlined

@@ -72,7 +72,7 @@ def perform(constants, state, active, book, team, thread, task):
     EVALUATE: all forces at the present places of rails at rest in their frame. KICK: advance all
     velocities, but no place, by the present forces. OBSERVE: advance those
     of the bodies only, and fill ``State.sums``. OPEN: begin the
-    ``book`` (``mechanics.ending``) at ignition, with the velocities of half a step before. ADVANCE:
+    ``book`` (``mechanics.books``) at ignition, with the velocities of half a step before. ADVANCE:
     take steps; call it in all threads of the team. It returns early, after whole steps of
     ``Constants.substeps``, if a pad comes near a rail at rest or friction damps a node faster than
     ``Task.most_damping``. Returns the number of steps, and the largest friction damping / mass

@@ -14,7 +14,7 @@ from tipoff.highfi.state import records
 from tipoff.highfi.statics import assembly, thermal
 from tipoff.kernels import rotation
 from tipoff.kernels.memory import zeros
-from tipoff.mechanics import comoving, ending
+from tipoff.mechanics import books, comoving
 from tipoff.mechanics.absent import NO_DAMPING, NO_PUSHERS
 from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.mechanics.laws.pushers import Pushers
@@ -283,7 +283,7 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
         impulse=np.zeros(6),
         face_force=np.zeros((system.faces.axis.size, 3)),
         face_moment=np.zeros((system.faces.axis.size, 3)),
-        guide_loads=ending.no_loads(int(system.faces.guide.max(initial=-1)) + 1),
+        guide_loads=books.no_loads(int(system.faces.guide.max(initial=-1)) + 1),
         history=_history(system.rail, nodes, blocks),
         pushing=pushers.new_state(system.pushers),
         holding=np.zeros(1),

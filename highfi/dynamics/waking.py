@@ -19,7 +19,7 @@ from tipoff.highfi.dynamics.regroup import regroup
 from tipoff.highfi.dynamics.resting import MOST_LEFT_OUT, Rails
 from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.highfi.statics.inertial import TERMS
-from tipoff.mechanics.ending import EXIT, PAST
+from tipoff.mechanics.books import EXIT, PAST
 
 _FAR = 4  # long steps before any pad can come near; fewer, and no long step begins
 

@@ -284,7 +284,7 @@ class State(NamedTuple):
     impulse: np.ndarray  # (6,) N s and N m s, external, about the scene origin
     face_force: np.ndarray  # (f,3) N on the payload in frame axes
     face_moment: np.ndarray  # (f,3) N m, its moment about the payload's mass centre in frame axes
-    guide_loads: np.ndarray  # (4,guides,LOAD_SIZE) largest loads (``mechanics.ending``)
+    guide_loads: np.ndarray  # (4,guides,LOAD_SIZE) largest loads (``mechanics.books``)
     history: History
     pushing: Pushing
     holding: np.ndarray  # (1,) N, last force of the hold-down on the payload

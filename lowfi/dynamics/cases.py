@@ -15,7 +15,7 @@ from tipoff.lowfi import state
 from tipoff.lowfi.faces import CENTRE, WALL
 from tipoff.lowfi.system import Body, Contact, System
 from tipoff.mechanics.absent import NO_LATCH, Offset, offset, rubs
-from tipoff.mechanics.ending import BOOK_SIZE
+from tipoff.mechanics.books import BOOK_SIZE
 from tipoff.mechanics.laws.friction import Friction
 from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.mechanics.laws.sticking import Sticking

@@ -20,8 +20,8 @@ from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.dynamics.dormand_prince import interpolate
 from tipoff.lowfi.dynamics.sample import posture, rearmost_edge
-from tipoff.mechanics import ending as books
-from tipoff.mechanics.ending import (
+from tipoff.mechanics import books
+from tipoff.mechanics.books import (
     AT_EXIT,
     DONE,
     EXCESS,

@@ -16,7 +16,7 @@ from tipoff.lowfi.dynamics.sample import follow_loads, observe
 from tipoff.lowfi.dynamics.step import step
 from tipoff.lowfi.dynamics.survey import survey, update_engaged
 from tipoff.lowfi.dynamics.vibration import follow_neglected, reset_neglected
-from tipoff.mechanics import ending as books
+from tipoff.mechanics import books
 
 # Results of ``integrate``: all samples taken; exit, settled window and jam known; or the reason of
 # an earlier stop.

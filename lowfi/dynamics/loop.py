@@ -12,7 +12,7 @@ from tipoff.lowfi.contact.compliant.record import states
 from tipoff.lowfi.contact.stick_slip import ROW_SIZE
 from tipoff.lowfi.contact.wall_ends import SURVEY_SIZE
 from tipoff.lowfi.dynamics.dormand_prince import STAGES
-from tipoff.mechanics.ending import BOOK_SIZE
+from tipoff.mechanics.books import BOOK_SIZE
 
 CLOCK = np.dtype(
     [
@@ -102,7 +102,7 @@ class Loop(NamedTuple):
     clock: np.record  # CLOCK
     counts: np.record  # COUNTS
     work: np.ndarray  # (n,) workspace
-    book: np.ndarray  # (BOOK_SIZE,) exit, settled window and jam (``mechanics.ending``)
+    book: np.ndarray  # (BOOK_SIZE,) exit, settled window and jam (``mechanics.books``)
     audit: np.record  # AUDIT, of the energy ledgers (``lowfi.dynamics.audit``)
 
 

@@ -30,7 +30,7 @@ from tipoff.lowfi.state import (
     WORK_SIZE,
     Motion,
 )
-from tipoff.mechanics import ending as books
+from tipoff.mechanics import books
 
 # Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes),
 # each BODY_SIZE long.

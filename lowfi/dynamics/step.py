@@ -19,7 +19,7 @@ from tipoff.lowfi.dynamics.events import first_event
 from tipoff.lowfi.dynamics.local_error import error_ratio
 from tipoff.lowfi.dynamics.survey import keeps_law, survey, update_engaged, update_touching
 from tipoff.lowfi.dynamics.vibration import longest_step, shortened
-from tipoff.mechanics.ending import EXIT
+from tipoff.mechanics.books import EXIT
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
 # Steps that error control proposes are powers of 2^(1/16). Error estimates of steps in which cells

@@ -15,7 +15,7 @@ from tipoff.lowfi.models import require_walls
 from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.lowfi.preparation import prepare
 from tipoff.lowfi.simulation import solved
-from tipoff.mechanics import comoving, ending, outcome
+from tipoff.mechanics import books, comoving, outcome
 from tipoff.mechanics.laws.friction import Friction
 from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.mechanics.laws.sticking import Sticking
@@ -192,7 +192,7 @@ class Family:
             whole=False,
             rows=np.zeros((0, SAMPLE_SIZE)),
             forces=np.zeros((0, len(prepared.system.faces), 3)),
-            loads=ending.no_loads(0),
+            loads=books.no_loads(0),
         )
 
         def call() -> np.ndarray:
@@ -216,7 +216,7 @@ class Family:
     def _case(self, model: Model, row: Mapping[str, Any], result: np.ndarray, share: float) -> Case:
         if result[cases.LEFT_OPEN]:
             return self._run_whole(row)
-        status, found = ending.found(result[cases.BOOK :])
+        status, found = books.found(result[cases.BOOK :])
         return Case(
             status,
             "",

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tests.scenes.support import motion
-from tipoff.mechanics import ending, outcome
+from tipoff.mechanics import books, outcome
 from tipoff.scenes import launch, load, scene_model
 
 
@@ -18,8 +18,8 @@ def quaternions(rotation: Rotation) -> np.ndarray:
 
 
 def book() -> np.ndarray:
-    found = np.zeros(ending.BOOK_SIZE)
-    ending.reset(found)
+    found = np.zeros(books.BOOK_SIZE)
+    books.reset(found)
     return found
 
 
@@ -28,7 +28,7 @@ def marks(settled=0.0, spent=0.0, constant=False) -> outcome.Milestones:
 
 
 def test_an_empty_book_is_a_time_limit():
-    assert ending.found(book()) == ("time_limit", outcome.Outcome())
+    assert books.found(book()) == ("time_limit", outcome.Outcome())
 
 
 @pytest.mark.parametrize("settled, start", [(0.0, 0.041), (0.0409, 0.041), (0.0437, 0.0437)])
@@ -37,23 +37,23 @@ def test_means_over_the_windows(settled, start, rows):
     """Steps that begin before a window and end after it count with the part inside. Each part's
     length is off by the rounding of the instants, 7e-18 s, of 2 ms."""
     made, time = book(), np.linspace(0.039, 0.047, 8 * rows + 1)
-    ending.leave(made, 0.04, marks(settled))
+    books.leave(made, 0.04, marks(settled))
     for began, ended in itertools.pairwise(time):
-        for window in (ending.LEAVING, ending.SETTLED):
-            low, high = ending.part_in(made, window, began, ended)
+        for window in (books.LEAVING, books.SETTLED):
+            low, high = books.part_in(made, window, began, ended)
             if high > low:
                 middle = 0.5 * (low + high)  # of linear motion the mean is the value there
-                row = np.zeros(ending.ROW_SIZE)
-                row[ending.SPEED : ending.SPEED + 3] = [5.0, 0.3 * middle, -0.4 * middle]
-                row[ending.SPIN : ending.SPIN + 3] = [1.0, 2.0, middle]
-                ending.count(made, window, row, high - low)
-        assert ending.found(made)[0] == "time_limit" and ending.found(made)[1].exit_time == 0.04
-        ending.close(made, ended)
-        if made[ending.DONE] < np.inf:
+                row = np.zeros(books.ROW_SIZE)
+                row[books.SPEED : books.SPEED + 3] = [5.0, 0.3 * middle, -0.4 * middle]
+                row[books.SPIN : books.SPIN + 3] = [1.0, 2.0, middle]
+                books.count(made, window, row, high - low)
+        assert books.found(made)[0] == "time_limit" and books.found(made)[1].exit_time == 0.04
+        books.close(made, ended)
+        if made[books.DONE] < np.inf:
             break
-    made[[ending.AT_EXIT + ending.ATTITUDE, ending.AT_EXIT + ending.BODY + ending.ATTITUDE]] = 1.0
-    status, found = ending.found(made)
-    assert status == "exited" and found.window_start == start and made[ending.DONE] == start + 2e-3
+    made[[books.AT_EXIT + books.ATTITUDE, books.AT_EXIT + books.BODY + books.ATTITUDE]] = 1.0
+    status, found = books.found(made)
+    assert status == "exited" and found.window_start == start and made[books.DONE] == start + 2e-3
     assert found.velocity == pytest.approx(
         [5.0, 0.3 * (start + 1e-3), -0.4 * (start + 1e-3)], abs=3e-13
     )
@@ -69,21 +69,19 @@ def test_a_window_that_ends_with_the_scene_is_whole():
     rounding."""
     for short, status in ((1e-16, "exited"), (1e-9, "time_limit")):
         made = book()
-        ending.leave(made, 0.04, marks())
-        ending.close(made, 0.043 - short)
-        made[[ending.AT_EXIT + ending.ATTITUDE, ending.AT_EXIT + ending.BODY + ending.ATTITUDE]] = (
-            1.0
-        )
-        assert ending.found(made)[0] == status
+        books.leave(made, 0.04, marks())
+        books.close(made, 0.043 - short)
+        made[[books.AT_EXIT + books.ATTITUDE, books.AT_EXIT + books.BODY + books.ATTITUDE]] = 1.0
+        assert books.found(made)[0] == status
 
 
 def test_the_values_at_exit_need_their_window_only():
     """A run that ends before it says so, and one that never leaves."""
     for until, known in ((0.0401, False), (0.0402, True)):
         made = book()
-        ending.leave(made, 0.04, marks())
-        ending.close(made, until)
-        status, found = ending.found(made)
+        books.leave(made, 0.04, marks())
+        books.close(made, until)
+        status, found = books.found(made)
         assert status == "time_limit" and (found.exit_rate is not None) == known
         words = outcome.no_exit_values(status, found)
         assert words == ("" if known else "the run ended less than 0.2 ms after the exit")
@@ -116,12 +114,12 @@ def test_the_share_of_the_impulse_after_the_exit():
 def test_exit_attitude(vector, sign):
     """Both signs of a quaternion are the same attitude."""
     made = book()
-    ending.leave(made, 0.04, marks())
-    ending.close(made, 1.0)
-    for body in (0, ending.BODY):
-        first = ending.AT_EXIT + body + ending.ATTITUDE
+    books.leave(made, 0.04, marks())
+    books.close(made, 1.0)
+    for body in (0, books.BODY):
+        first = books.AT_EXIT + body + books.ATTITUDE
         made[first : first + 4] = sign * quaternions(Rotation.from_rotvec(vector))
-    found = ending.found(made)[1]
+    found = books.found(made)[1]
     assert found.exit_attitude == found.exit_platform_attitude == pytest.approx(vector, abs=1e-12)
 
 
@@ -130,8 +128,8 @@ def looked_at(*looks) -> np.ndarray:
     since the look before (s)."""
     made = book()
     for look in looks:
-        if made[ending.DONE] == np.inf:
-            ending.look_at_speed(made, *look)
+        if made[books.DONE] == np.inf:
+            books.look_at_speed(made, *look)
     return made
 
 
@@ -155,13 +153,13 @@ def test_a_jam_lasts_five_milliseconds(looks, jammed_at):
     """On both sides of the duration, from its first moment or from a crossing, to the next crossing
     or without one; a faster moment in between begins it anew."""
     made = looked_at(*looks)
-    assert ending.found(made)[0] == ("time_limit" if jammed_at is None else "jammed")
-    assert jammed_at is None or made[ending.DONE] == pytest.approx(jammed_at, abs=1e-15)
+    assert books.found(made)[0] == ("time_limit" if jammed_at is None else "jammed")
+    assert jammed_at is None or made[books.DONE] == pytest.approx(jammed_at, abs=1e-15)
 
 
 def test_a_jam_counts_from_the_end_of_the_thrust_or_under_a_constant_one():
-    assert ending.watched_from(marks(spent=0.03)) == 0.03
-    assert ending.watched_from(marks(spent=0.03, constant=True)) == 0.0
+    assert books.watched_from(marks(spent=0.03)) == 0.03
+    assert books.watched_from(marks(spent=0.03, constant=True)) == 0.0
 
 
 def test_relative_motion_with_a_turning_platform():

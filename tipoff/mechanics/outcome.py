@@ -15,7 +15,7 @@ definitions.
 * **Fallen back**: the payload comes back to its stop (``mechanics.estimates.stop``) and is 1 mm behind its start.
   Without a stop, all pads are behind the start of the rail. Such a run ends as a jam.
 
-All values come from the steps of a run (``mechanics.ending``), independent of the sampling
+All values come from the steps of a run (``mechanics.books``), independent of the sampling
 interval.
 """
 

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 from tipoff.lowfi.dynamics import cases
-from tipoff.mechanics import ending, outcome
+from tipoff.mechanics import books, outcome
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.run_limits import SETTLE_WINDOW
@@ -137,7 +137,7 @@ class Surrogate:
 
     def solved(self, found: np.ndarray) -> int:
         """Cases that the kernel itself followed to the end of their settled windows."""
-        ended = np.isfinite(found[:, cases.BOOK + ending.DONE]) & (found[:, cases.STEPS] > 0)
+        ended = np.isfinite(found[:, cases.BOOK + books.DONE]) & (found[:, cases.STEPS] > 0)
         return int((ended & (found[:, cases.LEFT_OPEN] == 0)).sum())
 
     def whole(self, tolerance: float, **numerics) -> Callable:

@@ -12,7 +12,7 @@ from tests.highfi.support import COARSE, Stopped, begun, tiny, whole
 from tipoff import highfi, lowfi
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
 from tipoff.highfi.numerics import Numerics
-from tipoff.mechanics.ending import DONE
+from tipoff.mechanics.books import DONE
 from tipoff.scenes import launch
 
 

@@ -14,7 +14,7 @@ from tipoff.kernels import rotation
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.single_run import SingleRun
-from tipoff.mechanics.ending import DONE
+from tipoff.mechanics.books import DONE
 from tipoff.scenes import load
 
 STEEL = {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}

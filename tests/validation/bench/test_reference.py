@@ -20,7 +20,7 @@ from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.simulation import Loop
 from tipoff.highfi.statics import assembly
 from tipoff.lowfi.dynamics import cases
-from tipoff.mechanics.ending import DONE
+from tipoff.mechanics.books import DONE
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.outcome import Outcome
 from tipoff.scenes import load
