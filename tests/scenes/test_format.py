@@ -3,10 +3,12 @@
 import tomllib
 
 import pytest
+from typer.testing import CliRunner
 
 import tipoff
 from tipoff import SceneError
 from tipoff.scenes.reading import CATALOG, FORMAT
+from tipoff.studies.cli import app
 
 OTHERS = ["2", "0", '"1"', "1.0", "true"]
 
@@ -26,6 +28,13 @@ def faults(path):
 @pytest.mark.parametrize("path", sorted(CATALOG.glob("*.toml")), ids=lambda path: path.stem)
 def test_every_scene_of_the_catalogue_states_it(path):
     assert tomllib.loads(path.read_text(encoding="utf-8"))["format"] == FORMAT
+
+
+@pytest.mark.parametrize("asked", [(), ("--rocket",), ("--deployer", "6u")], ids=" ".join)
+def test_every_new_scene_states_it(asked, tmp_path):
+    file = tmp_path / "own.toml"
+    made = CliRunner().invoke(app, ["new", str(file), *asked])
+    assert made.exit_code == 0 and tomllib.loads(file.read_text())["format"] == FORMAT
 
 
 def test_a_file_without_it_is_read_as_the_first_format(tmp_path):

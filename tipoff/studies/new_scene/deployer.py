@@ -10,6 +10,7 @@ from collections.abc import Mapping
 import tomlkit
 
 from tipoff.scenes.parts.deployer import CUBESATS
+from tipoff.scenes.reading import FORMAT
 from tipoff.studies.new_scene import from_catalogue
 
 _MASS, _STROKE, _FORCE, _RATE = 4.0, 330.0, 20.0, 0.04  # kg, mm, N, N/mm: of the scene cubesat_3u
@@ -18,6 +19,7 @@ _TEXT = """\
 # "tipoff scenes --show {name}.toml" writes out size, inertia, pads, rails, stroke and all else that follows.
 # How probable is a rate above 10 deg/s?
 #   tipoff ensemble --scene {name}.toml --limit "x=10 deg/s" --limit "y=10 deg/s" --limit "z=10 deg/s"
+format = {format}
 name = {named}
 deployer = {{ cubesat = "{form}" }}
 payload = {{ mass = "{mass:.6g} kg" }}
@@ -50,6 +52,7 @@ def text(name: str, form: str, given: Mapping[str, float]) -> str:
     file = "cubesat_3u" if errors(form, given) is None else from_catalogue.errors_file(name)
     return _TEXT.format(
         name=name,
+        format=FORMAT,
         named=tomlkit.item(name).as_string(),
         form=form,
         mass=_mass(form, given),
