@@ -224,7 +224,9 @@ def labelled_netcdf(variables: Mapping[str, Labelled], attributes: Mapping[str, 
 
 def write_netcdf(path: str | Path, found: Any) -> None:
     """Write an xarray Dataset or DataTree as ``sealed`` does."""
-    write_sealed(path, netcdf(found.assign_attrs({FORMAT_KEY: FORMAT})))
+    stated = found.copy(deep=False)  # a DataTree has no assign_attrs
+    stated.attrs = {**found.attrs, FORMAT_KEY: FORMAT}
+    write_sealed(path, netcdf(stated))
 
 
 def require_whole(path: str | Path) -> str:
