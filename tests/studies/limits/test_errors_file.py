@@ -101,7 +101,8 @@ def rates(columns):
 @pytest.mark.case("O49")
 @pytest.mark.parametrize("names", [(OFFSET,), (OFFSET, "mass_offset.eccentricity")])
 def test_the_certified_multiple_is_the_closed_form(study, found, path, names):
-    """Of one offset alone, and of the whole file, whose mass changes no rate. Control: the multiple of the other inputs."""
+    """Of one offset alone, and of the whole file, whose mass changes no rate. Control: the multiple of the
+    other inputs."""
     row = found.rows[0] if len(names) == 1 else found.rows[-1]
     assert row.name == (OFFSET if len(names) == 1 else "together")
     exact = certified(rates(drawn(study, path, names)))
