@@ -68,7 +68,7 @@ class Compliance(NamedTuple):
         np.ndarray
     )  # (f,2) m, half size along xi and eta, negative where eta runs against the axis
     frequency: np.ndarray  # (r,n) rad/s
-    shape: np.ndarray  # (s,f,p,n) 1/kg^0.5, V
+    swung: np.ndarray  # (s,f,p+d,n) 1/kg^0.5, in the modes: V, then along X in d patterns
     # (s,f,p,t) m, mean displacement away from the payload by a unit of each of the t thermal fields
     warm: np.ndarray
     joints: JointTerms | None  # of rails on joints, if requested
@@ -77,6 +77,11 @@ class Compliance(NamedTuple):
     def matrix(self) -> np.ndarray:
         """Mean displacements (s,f,p,f,p) m/N under pressures, of all faces."""
         return pairs.whole(self.near[..., : self.gram.shape[-1]], self.rail)
+
+    @property
+    def shape(self) -> np.ndarray:
+        """V (s,f,p,n) 1/kg^0.5."""
+        return self.swung[:, :, : self.gram.shape[-1]]
 
     @property
     def dragged(self) -> np.ndarray:
@@ -131,9 +136,11 @@ def condense(
             moved_first=first @ found.joints.moved_first,
             moved_by_friction=first @ found.joints.moved_by_friction,
             shape=inverse @ found.joints.shape,
+            dragged_shape=first @ found.joints.dragged_shape,
         ),
         drawn=_drawn(scene, element_size),
         dragged=0.5 * (dragged + pairs.transposed(dragged, found.rail)),
+        dragged_shape=first @ found.swung[:, :, count:],
     )
 
 
@@ -324,7 +331,7 @@ def _placed(
 def _solved(own: _Placed, modes: int, joints: bool) -> Compliance:
     """As ``of_rails``."""
     stations, count, patterns = own.gram.shape[:3]
-    shape = np.zeros((stations, count, patterns, modes))
+    swung = np.zeros((stations, count, patterns + own.dragged, modes))
     frequencies: list[np.ndarray] = []
     parts: list[joint_terms.Part] = []
     warm = np.zeros((stations, count, patterns, FIELDS))
@@ -334,16 +341,16 @@ def _solved(own: _Placed, modes: int, joints: bool) -> Compliance:
         # An additional last place without response, for faces without a wall (number -1).
         together, number_of = pressed_together(places, len(patches.found), beside)
         with one_of(solved_before, len(own.under)):
-            answer, heated, frequency, swung, terms = patches.solved(
+            answer, heated, frequency, moved, terms = patches.solved(
                 rail, own.middle, modes, together, joints
             )
         between = np.pad(answer, [(0, 1), (0, 0), (0, 0)])
-        heated, swung = (np.pad(moved, [(0, 1), (0, 0), (0, 0)]) for moved in (heated, swung))
+        heated, moved = (np.pad(each, [(0, 1), (0, 0), (0, 0)]) for each in (heated, moved))
         for number, signs in zip(places, rail.images):
             # the fields linear in y and z change sign with the image
             warm += heated[number] * np.r_[1.0, signs, 1.0]
             near += between[number_of(number)]
-            shape += swung[number]
+            swung += moved[number]
             if (number >= 0).any():
                 frequencies.append(frequency)
                 if terms is not None:
@@ -356,7 +363,7 @@ def _solved(own: _Placed, modes: int, joints: bool) -> Compliance:
         rail=own.rail,
         half=own.half,
         frequency=np.array(frequencies).reshape(len(frequencies), modes),
-        shape=shape,
+        swung=swung,
         warm=warm,
         joints=joint_terms.together(parts, patterns, own.dragged) if parts else None,
     )

@@ -134,7 +134,7 @@ class Patches:
         loads of the second, normals of the faces positive: p pressures, then d tractions along X;
         and (m,p,t) of all places under a unit
         of each field of temperature around X = ``middle`` (m); frequencies (n,) rad/s of the lowest
-        modes and their displacement (m,p,n); with ``joints`` and modes, the terms of a joint."""
+        modes and their displacement (m,p+d,n), the last d along X; with ``joints`` and modes, the terms of a joint."""
         operator, loads = held.operator, self.loads()
         clamped = held.clamped(loads.shape[1])
         load, still = thermal.of_each_field(self._rail, operator, held.material, middle)
@@ -154,7 +154,9 @@ class Patches:
             answer,
             warm.reshape(*under, FIELDS),
             frequency,
-            (loads.T @ shape).reshape(*under, modes),
+            np.concatenate(
+                [_by_place(each, shape, len(self.found)) for each in (loads, drag)], axis=1
+            ),
             terms,
         )
 
@@ -208,6 +210,11 @@ class Patches:
                 shape=shape,
             )
         )
+
+
+def _by_place(loads: csc_array, shape: np.ndarray, places: int) -> np.ndarray:
+    """Displacement (m,p,n) in each ``shape`` (3n,n) of the ``loads`` (3n,mp) of so many ``places``."""
+    return (loads.T @ shape).reshape(places, loads.shape[1] // places, shape.shape[1])
 
 
 def part_of_wall(

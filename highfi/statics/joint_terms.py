@@ -33,6 +33,7 @@ class Terms(NamedTuple):
     moved_by_friction: np.ndarray  # (d,n)
     heated: np.ndarray  # (n,t)
     shape: np.ndarray  # (l,m)
+    dragged_shape: np.ndarray  # (d,m)
     stiffness: np.ndarray  # (m,m)
     joint: np.ndarray  # (m,m)
 
@@ -70,6 +71,7 @@ def solved(
         moved_by_friction=dragged[:, kept],
         heated=heated[:, kept].T,
         shape=loads.pressure.T @ basis,
+        dragged_shape=loads.drag.T @ basis,
         stiffness=basis.T @ (held.stiffness @ basis),
         joint=basis.T @ (joints @ basis),
     )
@@ -132,6 +134,7 @@ def together(parts: list[Part], patterns: int, dragged: int) -> JointTerms:
             [padded(part.terms.heated * np.r_[1.0, part.signs, 1.0], 0) for part in parts]
         ),
         shape=_sum(under(part, part.terms.shape) for part in parts),
+        dragged_shape=_sum(under(part, part.terms.dragged_shape, dragged) for part in parts),
         stiffness=np.array([part.terms.stiffness for part in parts]),
         joint=np.array([part.terms.joint for part in parts]),
     )

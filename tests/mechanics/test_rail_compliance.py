@@ -171,6 +171,7 @@ def test_terms_of_joints_that_do_not_belong_together_are_refused(compliance, tmp
         moved_by_friction=np.zeros((stations, faces, DRAGGED, 3)),
         heated=np.zeros((rails, 3, FIELDS)),
         shape=np.zeros((stations, faces, PATTERNS, modes)),
+        dragged_shape=np.zeros((stations, faces, DRAGGED, modes)),
         stiffness=np.tile(np.eye(modes), (rails, 1, 1)),
         joint=np.zeros((rails, modes, modes)),
     )

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels.jit import kernel
+from tipoff.lowfi.contact.compliant.modes import reach
 from tipoff.lowfi.contact.wall_ends import (
     BEYOND,
     CLOSING,
@@ -121,7 +122,7 @@ def _nearest(modes, rail, face, speed, state, row):
     number, swing = modes.square.shape[1], 0.0
     first, rates = STATE_SIZE + rail * number, STATE_SIZE + modes.square.size + rail * number
     for i in range(number):
-        swing += modes.reach[face, i] * _amplitude(
+        swing += reach(modes, face, i) * _amplitude(
             modes.square[rail, i], state[first + i], state[rates + i]
         )
     # the present depth may be one swing less than that on a wall at rest
@@ -164,7 +165,7 @@ def _resolved(modes, rail, face, state):
     for i in range(number):
         square = modes.square[rail, i]
         amplitude = _amplitude(square, state[first + i], state[rates + i])
-        total += modes.reach[face, i] * amplitude * square * square
+        total += reach(modes, face, i) * amplitude * square * square
     return (_MISSED * _HERMITE / total) ** 0.25 if total > 0.0 else np.inf
 
 

@@ -1,9 +1,12 @@
 """Vibration of the rails: their lowest modes, integrated with the bodies (data:
 ``mechanics.rail_compliance``).
 
-    U = F_res P + W q,    q_m'' + d_m q_m' + omega_m^2 q_m = sum_ia W_iam P_ia,    d_m = alpha + beta omega_m^2
+    U = F_res P + S q,    q_m'' + d_m q_m' + omega_m^2 q_m = sum_ia S_iam P_ia,    d_m = alpha + beta omega_m^2
+    S = W + mu / 2 V
 
-with W at the pads. The other modes respond without inertia. These are Lagrange's equations of the
+with W at the pads. Friction of the coefficient mu drives a mode by its displacement V along X. Of this, S
+has the symmetric part, as D of ``solution`` has: half by the force on the mode, half by the displacement of
+the wall. The other modes respond without inertia. These are Lagrange's equations of the
 potential in ``loads`` and the modes' own energy sum_m (q_m'^2 + omega_m^2 q_m^2) / 2, so both
 ledgers close. At ignition a rail is at rest and straight, as in the reference. While
 faces press a rail the step size follows its highest mode (``lowfi.dynamics.local_error``,
@@ -18,9 +21,10 @@ platform of 81 kg: the effect is a thousandth of the contact force, and 1e-5 m/s
 a wall vibrates at 10 mm/s. So the momenta of payload and platform are conserved to rounding.
 """
 
-from tipoff.kernels.jit import kernel
+from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi.contact.compliant import parts, patterns
 from tipoff.lowfi.state import STATE_SIZE
+from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 
 
 @kernel
@@ -34,17 +38,38 @@ def evaluate(modes, rail, face, station, way, changes, state):
         modes.slope[face, :] = 0.0
         modes.speed[face, :] = 0.0
         for i in range(count):
-            c = modes.cubic[station, face, i]
+            c, q, rate = modes.cubic[station, face, i], state[first + i], state[rates + i]
             for a in range(size):
-                value = c[0, a] + way * (c[1, a] + way * (c[2, a] + way * c[3, a]))
+                own, ahead = _between(c, a, way)
+                rubbed, ahead_rubbed = _by_friction(modes, station, face, i, a, way)
+                value = own + rubbed
                 modes.shape[face, i, a] = value
-                modes.offset[face, a] += state[first + i] * value
-                modes.slope[face, a] += (
-                    state[first + i]
-                    * changes
-                    * (c[1, a] + way * (2.0 * c[2, a] + way * 3.0 * c[3, a]))
-                )
-                modes.speed[face, a] += state[rates + i] * value
+                modes.offset[face, a] += q * value
+                modes.slope[face, a] += q * changes * (ahead + ahead_rubbed)
+                modes.speed[face, a] += rate * value
+
+
+@inlined
+def _between(c, a, way):
+    """Value and derivative of one of the cubics ``c`` (4,...)."""
+    value = c[0, a] + way * (c[1, a] + way * (c[2, a] + way * c[3, a]))
+    return value, c[1, a] + way * (2.0 * c[2, a] + way * 3.0 * c[3, a])
+
+
+@inlined
+def _by_friction(modes, station, face, i, a, way):
+    """mu / 2 V of mode i in pattern a, and its derivative; zeros without friction."""
+    value, ahead = 0.0, 0.0
+    if a < DRAGGED and modes.dragged.shape[0] > 0:
+        value, ahead = _between(modes.dragged[station, face, i], a, way)
+    share = 0.5 * modes.friction[0]
+    return share * value, share * ahead
+
+
+@kernel
+def reach(modes, face, i):
+    """Bound (1/kg^0.5) of the displacement of a point under ``face`` by a unit of mode i."""
+    return modes.reach[face, i, 0] + 0.5 * modes.friction[0] * modes.reach[face, i, 1]
 
 
 @kernel

@@ -61,8 +61,13 @@ class Modes(NamedTuple):
     # (s-1, f, n, 4, p) 1/kg^0.5, shapes between stations, as ``Compliance.cubic``
     cubic: np.ndarray
     levels: tuple  # (d+1,) as in ``Workspace``
-    reach: np.ndarray  # (f, n) 1/kg^0.5, bound of the displacement of a point under a face
-    shape: np.ndarray  # (f, n, p) 1/kg^0.5, workspace: shapes at the faces
+    # (s-1, f, n, 4, d) 1/kg^0.5 likewise, along X in the first d patterns; without stations if there is
+    # no friction
+    dragged: np.ndarray
+    friction: np.ndarray  # (1,) that of ``Workspace``
+    # (f, n, 2) 1/kg^0.5, bound of the displacement of a point under a face, by each of both
+    reach: np.ndarray
+    shape: np.ndarray  # (f, n, p) 1/kg^0.5, workspace: shapes S at the faces
     # (f, n, p) N/(m kg^0.5), workspace: forces by a unit of each mode on a pad at rest, no wall yielding
     pressed: np.ndarray
     offset: np.ndarray  # (f, p) m, workspace: displacement
@@ -150,10 +155,12 @@ def build(
     edges = np.linspace(-1.0, 1.0, cells + 1)
     node, crown = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / (5.0 * np.diff(edges))
     flexibility, shape, reach = found.cubic(modes)
-    dragged = found.cubic_of_dragged if model.friction is not None else None
+    rubbed = found.cubic_of_friction(modes) if model.friction is not None else None
+    dragged, along, reach_along = rubbed or (_none(5), _none(5), np.zeros_like(reach))
+    workspace = _workspace(faces.axis.size, members.shape[1], modes, found.degree, model)
     return Compliance(
         cubic=flexibility,
-        dragged=_none(5) if dragged is None else dragged,
+        dragged=dragged,
         origin=float(nominal[0, 0] + found.travel[0]),
         spacing=spacing,
         members=members,
@@ -169,12 +176,16 @@ def build(
         end=float(model.rail_end),
         node=node,
         crown=crown,
-        modes=_modes(found, shape, reach, damping),
+        modes=_modes(
+            found,
+            (shape, along),
+            np.stack([reach, reach_along], axis=-1),
+            drag_of(found.frequency[:, :modes] ** 2, damping),
+            workspace.friction,
+        ),
         thermal_offset=_thermal_offset(found, model),
         drawn=_drawn(found, model),
-        workspace=_workspace(
-            faces.axis.size, members.shape[1], shape.shape[2], found.degree, model
-        ),
+        workspace=workspace,
     )
 
 
@@ -216,17 +227,22 @@ def states(compliance: Compliance | None) -> int:
 
 
 def _modes(
-    found: data.RailCompliance, cubic: np.ndarray, reach: np.ndarray, damping: Damping | None
+    found: data.RailCompliance,
+    cubics: tuple[np.ndarray, np.ndarray],
+    reach: np.ndarray,
+    drag: np.ndarray,
+    friction: np.ndarray,
 ) -> Modes:
-    count = cubic.shape[2]
-    square = found.frequency[:, :count] ** 2
+    count = drag.shape[1]
     by_pattern = found.shape.shape[1:3]
     faces, patterns = by_pattern
     return Modes(
         levels=tuple(range(found.degree + 1)),
-        square=square,
-        drag=drag_of(square, damping),
-        cubic=cubic,
+        square=found.frequency[:, :count] ** 2,
+        drag=drag,
+        cubic=cubics[0],
+        dragged=cubics[1],
+        friction=friction,
         reach=reach,
         shape=zeros((faces, count, patterns)),
         pressed=zeros((faces, count, patterns)),

@@ -45,6 +45,8 @@ def require(found: Any) -> None:
         expected["part"] = (stations, faces, 2)
     if found.dragged is not None:
         expected["dragged"] = (stations, faces, most, DRAGGED, DRAGGED)
+    if found.dragged_shape is not None:
+        expected["dragged_shape"] = (stations, faces, DRAGGED, modes)
     if found.drawn is not None:
         _require_dimensions("drawn", found.drawn, 3)
         expected["drawn"] = (max(len(found.drawn), 2), faces, drawn_walls.ACROSS)
@@ -64,6 +66,7 @@ def require(found: Any) -> None:
         "moved_by_friction": (stations, faces, DRAGGED, count),
         "heated": (rails, count, FIELDS),
         "shape": (stations, faces, patterns, shapes),
+        "dragged_shape": (stations, faces, DRAGGED, shapes),
         "stiffness": (rails, shapes, shapes),
         "joint": (rails, shapes, shapes),
     }.items():

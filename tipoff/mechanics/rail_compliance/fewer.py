@@ -10,22 +10,31 @@ from tipoff.mechanics.rail_compliance import pairs, patterns
 def of_first(own: Any, count: int) -> dict[str, Any]:
     """Fields that change if loads are in the first ``count`` patterns of ``own``, a
     ``RailCompliance``, and displacements projected on them."""
-    gram, flexibility, dragged = own.gram[..., :count, :], own.flexibility, own.dragged
-    onto = np.linalg.inv(gram[..., :count]) @ gram
+    flexibility, dragged, dragged_shape = own.flexibility, own.dragged, own.dragged_shape
+    onto, inside = projection(own, count), np.arange(patterns.DRAGGED) < count
     if flexibility is not None:
         flexibility = pairs.on_both_sides(onto, flexibility, own.rail)
     if dragged is not None:
-        inside = np.arange(patterns.DRAGGED) < count
         dragged = dragged * inside[:, None] * inside
+    if dragged_shape is not None:
+        dragged_shape = dragged_shape * inside[:, None]
     return {
         "flexibility": flexibility,
         "dragged": dragged,
+        "dragged_shape": dragged_shape,
         "shape": onto @ own.shape,
         "warm": None if own.warm is None else np.einsum("siab,tsib->tsia", onto, own.warm),
         "joints": None,
         "find_joints": None,
         "nodes": None,
     }
+
+
+def projection(own: Any, count: int) -> np.ndarray:
+    """Matrices (s,f,c,p) from displacements in the patterns of ``own`` to those in the first ``count``
+    alone, which have the same means with these."""
+    gram = own.gram[..., :count, :]
+    return np.linalg.inv(gram[..., :count]) @ gram
 
 
 def restricted(own: Any, count: int, coupled: bool) -> dict[str, Any]:
@@ -42,6 +51,7 @@ def restricted(own: Any, count: int, coupled: bool) -> dict[str, Any]:
     return found | {
         "flexibility": flexibility * alone[:, :, None, None],
         "dragged": None,
+        "dragged_shape": None,
         "frequency": own.frequency[:, :0],
         "shape": shape[..., :0],
     }

@@ -35,6 +35,7 @@ class JointTerms(NamedTuple):
     moved_by_friction: np.ndarray  # (s,f,d,n) 1/N^0.5 m^0.5, by traction along X in these
     heated: np.ndarray  # (r,n,t) N^0.5 m^0.5, part of each term in the load of each thermal field
     shape: np.ndarray  # (s,f,p,m) 1/kg^0.5, displacement in orthonormal shapes that span the modes
+    dragged_shape: np.ndarray  # (s,f,d,m) 1/kg^0.5, along X in these shapes
     stiffness: np.ndarray  # (r,m,m) 1/s2, of the rail on its joints in these shapes
     joint: np.ndarray  # (r,m,m) 1/s2, of the joints alone
 
@@ -75,16 +76,19 @@ def _together(
 
 def modes(
     terms: JointTerms, factor: float, count: int, rail: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies (r,n) rad/s of the lowest ``count`` modes at a ``factor``, and their shapes
-    (s,f,p,n) 1/kg^0.5."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Frequencies (r,n) rad/s of the lowest ``count`` modes at a ``factor``, their shapes
+    (s,f,p,n) 1/kg^0.5, and those along X (s,f,d,n)."""
     squares, vectors = np.linalg.eigh(terms.stiffness + (factor - 1.0) * terms.joint)
     # The largest entry is positive, for any sign from the library.
     vectors = vectors[..., :count]
     largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=1)[:, None], axis=1)
     vectors = vectors * np.sign(largest)
-    shape = np.einsum("sfpm,fmn->sfpn", terms.shape, vectors[rail])
-    return np.sqrt(squares[:, :count]), shape
+    shape, dragged_shape = (
+        np.einsum("sfpm,fmn->sfpn", each, vectors[rail])
+        for each in (terms.shape, terms.dragged_shape)
+    )
+    return np.sqrt(squares[:, :count]), shape, dragged_shape
 
 
 def warm(terms: JointTerms, factor: float, nominal: np.ndarray, rail: np.ndarray) -> np.ndarray:

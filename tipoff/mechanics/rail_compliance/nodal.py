@@ -3,11 +3,12 @@
 A place of a pad is on a few nodes of the wall, and many places are on the same ones. With the loads E' of
 a face on its nodes, which are the displacements E of the face too, and G between nodes::
 
-    F_ij = E_i G E_j',   T_ij = E_i G_x E_j',   W_i = E_i psi,   T_i = E_i w
+    F_ij = E_i G E_j',   T_ij = E_i G_x E_j',   W_i = E_i psi,   V_i = E_i psi_x,   T_i = E_i w
 
-for pressure, for traction along X, in the modes and by each thermal field. On an extruded rail E is a
-product of a function of the place along the rail and one of the place across it: a few shapes span it.
-So a file holds G, and E by these shapes, in place of the tables between all faces at all stations.
+for pressure, for traction along X, in the modes, along X in the modes, and by each thermal field.
+On an extruded rail E is a product of a function of the place along the rail and one of the place across it:
+a few shapes span it. So a file holds G, and E by these shapes, in place of the tables between all faces at
+all stations.
 """
 
 from typing import NamedTuple
@@ -51,6 +52,7 @@ class Tables(NamedTuple):
     flexibility: np.ndarray
     dragged: np.ndarray
     shape: np.ndarray
+    dragged_shape: np.ndarray
     warm: np.ndarray
 
 
@@ -103,6 +105,7 @@ class Nodal(NamedTuple):
             flexibility=flexibility,
             dragged=0.5 * (rubbed + pairs.transposed(rubbed, rail)),
             shape=every @ self.swung[self.normal],
+            dragged_shape=self.toward[:, None, None] * (first @ self.swung[self.along]),
             warm=warm,
         )
 

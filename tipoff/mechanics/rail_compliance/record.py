@@ -17,6 +17,7 @@ from tipoff.mechanics.rail_compliance import (
     joint_terms,
     pairs,
     patterns,
+    residual,
     softened,
     stored,
 )
@@ -29,7 +30,6 @@ MODES = 20  # of each rail, stored with its compliance
 
 _KEEPING, _FINDING = threading.Lock(), threading.Lock()
 _KEPT_FACTORS = 4  # compliances at other factors that are kept in memory
-_ROUNDING = 1e-9  # of the norm of F: error of a zero eigenvalue due to the modes
 LARGE = 1e8  # bytes of F; splines, four times as large, are then held for one number of modes only
 
 
@@ -73,6 +73,9 @@ class RailCompliance(Shown):
     #: patterns, for a unit of pressure in each and a coefficient of 1. None for walls that friction
     #: does not move.
     dragged: np.ndarray | None = None
+    #: (s,f,d,n) 1/kg^0.5, shapes V of the modes along X, in these patterns: the wall's displacement that
+    #: friction drives. None: friction does not drive the modes.
+    dragged_shape: np.ndarray | None = None
     #: Nodes of a long rail, from which its tables follow (``nodal``); they are in its file instead.
     nodes: Nodal | None = None
     #: Computes ``joints``, None for rigid mounts.
@@ -134,7 +137,8 @@ class RailCompliance(Shown):
         dragged = self.dragged
         if dragged is not None:
             dragged = joint_terms.dragged(terms, factor, dragged, self.rail)
-        frequency, shape = joint_terms.modes(terms, factor, self.frequency.shape[1], self.rail)
+        count = self.frequency.shape[1]
+        frequency, shape, along = joint_terms.modes(terms, factor, count, self.rail)
         return replace(
             self,
             flexibility=flexibility,
@@ -144,6 +148,7 @@ class RailCompliance(Shown):
             joints=None,
             find_joints=None,
             dragged=dragged,
+            dragged_shape=along,
             nodes=None,
         )
 
@@ -174,10 +179,27 @@ class RailCompliance(Shown):
         if found is None:
             self._make_room()
             shape, between = self.shape[..., :modes], self._between_faces(self.residual(modes))
-            along = np.ascontiguousarray(self.cubic_of(shape).transpose(0, 1, 3, 4, 2))
-            reach = np.abs(self.on_part.swapaxes(-1, -2) @ shape).sum(axis=2).max(axis=0)
-            found = self._cubics[modes] = between, along, reach
+            found = self._cubics[modes] = between, *self._of_modes(shape)
         return found
+
+    def cubic_of_friction(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """As ``cubic``, for the displacement by friction in the first d patterns: ``dragged`` without the
+        part of the first ``modes`` (``residual.dragged``), their shapes along X (s-1,f,n,4,d), and the
+        largest displacement (f,n) by these. None for walls that friction does not move."""
+        if self.dragged is None:
+            return None
+        key = "friction", modes
+        if key not in self._cubics:
+            shape = residual.along(self)[..., :modes]
+            between = self._between_faces(residual.dragged(self, modes))
+            self._cubics[key] = between, *self._of_modes(shape)
+        return self._cubics[key]
+
+    def _of_modes(self, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Shapes (s,f,p,n) of modes between stations (s-1,f,n,4,p), and the largest displacement (f,n)
+        of a point."""
+        along = np.ascontiguousarray(self.cubic_of(shape).transpose(0, 1, 3, 4, 2))
+        return along, np.abs(self._to_part(shape)).sum(axis=2).max(axis=0)
 
     def _make_room(self) -> None:
         """Forget the splines of all ``LARGE`` compliances if this is one."""
@@ -188,19 +210,18 @@ class RailCompliance(Shown):
                 _WITH_SPLINES.add(self)
 
     def cubic_of(self, moved: np.ndarray) -> np.ndarray:
-        """Displacements (s,f,p,...) of the walls between stations (s-1,f,p,...,4), in the patterns of
-        the parts of the faces that have a wall."""
-        on_part = self.on_part.swapaxes(-1, -2)
-        return cubic(self.travel, np.einsum("sfab,sfb...->sfa...", on_part, moved), self._breaks)
+        """Displacements (s,f,p,...) of the walls, in all or the first patterns, between stations
+        (s-1,f,p,...,4), in the patterns of the parts of the faces that have a wall."""
+        return cubic(self.travel, self._to_part(moved), self._breaks)
+
+    def _to_part(self, moved: np.ndarray) -> np.ndarray:
+        size = moved.shape[2]
+        on_part = self.on_part[..., :size, :size].swapaxes(-1, -2)
+        return np.einsum("sfab,sfb...->sfa...", on_part, moved)
 
     @cached_property
     def _breaks(self) -> list[tuple[int, ...]]:
         return [()] * self.rail.size if self.part is None else breaks(self.part)
-
-    @cached_property
-    def cubic_of_dragged(self) -> np.ndarray | None:
-        """``dragged`` between stations, as the flexibility in ``cubic``."""
-        return None if self.dragged is None else self._between_faces(self.dragged)
 
     def _between_faces(self, table: np.ndarray) -> np.ndarray:
         return between_faces(self.travel, table, self.rail, self.on_part, self._breaks)
@@ -213,8 +234,7 @@ class RailCompliance(Shown):
     @cached_property
     def shapes(self) -> np.ndarray:
         """Shapes (s-1,f,n,4,p) of all modes between stations, as in ``cubic``."""
-        between = self.cubic_of(self.shape)
-        return np.ascontiguousarray(between.transpose(0, 1, 3, 4, 2))
+        return self._of_modes(self.shape)[0]
 
     @cached_property
     def _cubics(self) -> dict:
@@ -223,25 +243,7 @@ class RailCompliance(Shown):
     def residual(self, modes: int) -> np.ndarray:
         """Flexibility (s,f,m,p,p) m/N without the part of the first ``modes`` of each rail. Raises
         ValueError if this is not positive semidefinite: the modes then belong to another rail."""
-        flexibility = self._flexibility()
-        if modes == 0:
-            return flexibility
-        part = self.shape[..., :modes] / self.frequency[self.rail, None, :modes]
-        rest = flexibility.copy()
-        for row in self.members:
-            own = row[row >= 0]
-            for few in pairs.few_stations(rest):
-                here, moved = rest[few], part[few][:, own].reshape(len(rest[few]), -1, modes)
-                here[:, own, : own.size] -= pairs.blocks(moved @ moved.swapaxes(1, 2), own.size)
-                left, every = (pairs.of_rail(table, own) for table in (here, flexibility[few]))
-                norm = np.linalg.norm(every, axis=(1, 2))
-                allowed = _ROUNDING * np.where(norm > 0.0, norm, 1.0)
-                if not pairs.is_positive(left + allowed[:, None, None] * np.eye(left.shape[1])):
-                    words = (
-                        "with more compliance than the wall has, expected modes of the same rail"
-                    )
-                    raise ValueError(f"modes: given {modes} {words}")
-        return rest
+        return residual.flexibility(self, modes)
 
     def _flexibility(self) -> np.ndarray:
         """The flexibility; fails for rigid walls."""
@@ -268,6 +270,7 @@ class RailCompliance(Shown):
             self.warm,
             self.drawn,
             self.dragged,
+            self.dragged_shape,
         ):
             if array is not None:
                 digest.update(np.ascontiguousarray(array).tobytes())
@@ -296,7 +299,13 @@ class RailCompliance(Shown):
     def rigid(self) -> "RailCompliance":
         """These walls without flexibility: only their offsets, for springs."""
         return replace(
-            self, flexibility=None, dragged=None, nodes=None, element_size=None, uncertainty=None
+            self,
+            flexibility=None,
+            dragged=None,
+            dragged_shape=None,
+            nodes=None,
+            element_size=None,
+            uncertainty=None,
         )
 
     def moved(self, amounts: np.ndarray) -> np.ndarray:
