@@ -50,6 +50,7 @@ def test_an_injected_error_of_the_compliance_is_the_part_of_the_mesh(walls, by):
         flexibility=(1.0 + by) * walls.flexibility,
         dragged=(1.0 + by) * walls.dragged,
         shape=np.sqrt(1.0 + by) * walls.shape,
+        dragged_shape=np.sqrt(1.0 + by) * walls.dragged_shape,
     )
     modes = run.numerics["modes"]
     expected = change(run, tipoff.run(scene, compliance=larger, sensitivity=False, modes=modes))

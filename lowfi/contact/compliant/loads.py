@@ -5,7 +5,7 @@
 (modes have their own potential). The forces are: P_1 against the normal, at the centre of pressure;
 and along X, where the rail becomes softer or stiffer ahead::
 
-    X = P' F' P / 2 + P' (T' + W' q)
+    X = P' F' P / 2 + P' (T' + S' q)
 
 which acts on payload and platform at the payload's mass centre, because it depends on its travel.
 Two more act at the middle of the pad, because they depend on its place. One acts along X if the
@@ -121,7 +121,7 @@ def axial_force(compliance, count):
 
 @kernel
 def energy(compliance, count):
-    """Energy (J) in rail and interface under the ``count`` solved faces: P' F P is P' (U - T - W
+    """Energy (J) in rail and interface under the ``count`` solved faces: P' F P is P' (U - T - S
     q)."""
     total, size = 0.0, patterns.count(compliance.workspace.levels)
     for i in range(count):

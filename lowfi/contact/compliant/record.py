@@ -103,7 +103,7 @@ class Compliance(NamedTuple):
     # (s-1, f, m, 4, p p) m/N, between a face and the m members of its rail, as powers of the distance
     # (m) from a station, in the patterns of the parts of the faces over the wall (``parts``)
     cubic: np.ndarray
-    # (s-1, f, m, 4, d d) m/N, as ``cubic``, in the first d patterns for a coefficient of 1; without
+    # (s-1, f, m, 4, d d) m/N, D_res as ``cubic``, in the first d patterns for a coefficient of 1; without
     # stations if there is no friction
     dragged: np.ndarray
     origin: float  # m, X of the first face at the first station

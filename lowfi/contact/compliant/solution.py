@@ -1,11 +1,11 @@
 """Displacement of the walls of one rail under the faces that press on it, by Newton's method on
 piecewise linear equations.
 
-    U = T + F P(U) + W q,    (1 + F K) dU = T + F P + W q - U,
+    U = T + F P(U) + S q,    (1 + F K) dU = T + F P + S q - U,
     K_iab = dP_ia/d(-U_ib) = sum over pressed cells of k dA phi_a phi_b
 
 F is the flexibility without the modes, plus what friction of the payload that slides forward adds
-(``Workspace.friction`` times D of ``mechanics.rail_compliance``), W q the displacement of the modes
+(``Workspace.friction`` times D_res of ``mechanics.rail_compliance``), S q the displacement of the modes
 (``lowfi.contact.compliant.modes``), T the thermal offset
 (``lowfi.contact.compliant.thermal_offset``). P is the gradient of a convex potential, so the
 solution is unique. While the set of pressed cells does not change, the equations are linear and a
@@ -209,7 +209,7 @@ def take_pressed(workspace, count):
 
 @kernel
 def _fill_left(compliance, count):
-    """Fill ``change`` with what is left of the equations: F P + T + W q - U."""
+    """Fill ``change`` with what is left of the equations: F P + T + S q - U."""
     workspace, size = compliance.workspace, patterns.count(compliance.workspace.levels)
     for i in range(count):
         face = workspace.order[i]

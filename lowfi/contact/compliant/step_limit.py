@@ -15,7 +15,7 @@ trace R. R is at most k A r^2 times the inverse mass, since T <= K; so the trace
 + sqrt(R))^2 (Minkowski).
 
 Modes of loaded rails add a diagonal of omega^2 and d to the matrices. This raises their spectra by
-the largest of each (Weyl), and by the trace of contact on the modes, W' T W.
+the largest of each (Weyl), and by the trace of contact on the modes, S' T S.
 """
 
 import numpy as np
@@ -153,7 +153,7 @@ def _fill_pressed(modes, workspace, count):
 
 @kernel
 def _trace_of_modes(modes, workspace, count, first):
-    """Trace (1/s2) of W' T W; ``right`` has dU of the modes from the column ``first`` on."""
+    """Trace (1/s2) of S' T S; ``right`` has dU of the modes from the column ``first`` on."""
     total = 0.0
     if modes.square.size > 0:
         size = patterns.count(workspace.levels)

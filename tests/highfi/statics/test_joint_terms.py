@@ -10,7 +10,7 @@ from tipoff import highfi
 from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance
 from tipoff.highfi.rail import inputs
-from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.rail_compliance import RailCompliance, residual
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
 from tipoff.scenes import SceneError
 from tipoff.scenes.rail_compliance import of_scene, require
@@ -53,6 +53,9 @@ def test_a_factor_gives_what_condensation_there_gives(nominal, factor):
     assert found.frequency[:, :10] == pytest.approx(exact.frequency[:, :10], rel=1e-4)
     assert (found.frequency >= exact.frequency * (1.0 - 1e-9)).all()
     found.residual(20)
+    rest = residual.dragged(exact, 10)
+    assert largest(residual.dragged(found, 10), rest) < 1e-3
+    assert largest(exact.dragged, rest) > 0.1
     softer, stiffer = ((LEAST, 1.0), (1.0, MOST))[int(factor > 1.0)]
     ends = [
         of_scene(nominal, on_joints().replace({KEY: end})).flexibility for end in (softer, stiffer)

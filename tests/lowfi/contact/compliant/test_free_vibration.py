@@ -17,8 +17,10 @@ from tipoff.lowfi.contact.compliant import free_vibration
 from tipoff.lowfi.dynamics import integrate
 from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics.rail_compliance import PATTERNS
+from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 
 OMEGA, SWING = 2.0 * np.pi * 3000.0, 2e-6  # 1/s; m, amplitude of the wall
+MU = 0.2  # friction of a pad that does not slide
 
 
 @entry
@@ -36,13 +38,14 @@ def test_a_free_mode_follows_the_exponential_of_its_matrix(ratio, turns):
     assert [q, rate / OMEGA] == pytest.approx(exact, rel=1e-5, abs=1e-11 * 1e-6)
 
 
-def vibrating(gap: float, speed: float) -> tuple[SingleRun, np.ndarray]:
+def vibrating(gap: float, speed: float, rubbed: float = 0.0) -> tuple[SingleRun, np.ndarray]:
     """A payload that nothing pushes, with one flat pad ``gap`` (m) from a wall that it approaches at
-    ``speed`` (m/s); the wall vibrates in one mode, its amplitude ``SWING``. Its first state too."""
+    ``speed`` (m/s); the wall vibrates in one mode, its amplitude ``SWING``, of which friction has the part
+    ``rubbed``. Its first state too."""
     heavy = {"inertia": {"xx": 1e6, "yy": 1e6, "zz": 1e6}}
     pad = {"position": (0.0, 0.1, 0.1), "normals": ["+y"], "length": 0.016, "width": 0.016}
     asked = on_springs(
-        RUB | {"static": 0.0, "dynamic": 0.0},
+        RUB | {"static": MU, "dynamic": MU},
         interface_stiffness=1e9,
         pads=[pad | {"inset": 0.009, "relief": 0.0}],
         duration=5e-3,
@@ -53,9 +56,16 @@ def vibrating(gap: float, speed: float) -> tuple[SingleRun, np.ndarray]:
         output={"interval": 1e-6},
     )
     shape = np.zeros((2, 1, PATTERNS, 1))
-    shape[:, 0, 0] = 1.0
+    shape[:, 0, 0] = 1.0 - rubbed
+    along, dragged = np.zeros((2, 1, DRAGGED, 1)), np.zeros((2, 1, 1, DRAGGED, DRAGGED))
+    along[:, 0, 0] = 2.0 * rubbed / MU
+    dragged[..., 0, 0] = (1.0 - rubbed) * 2.0 * rubbed / MU / OMEGA**2
     compliance = replace(
-        handmade(asked, {(0, 0, 0, 0): 2.0 / OMEGA**2}), frequency=np.array([[OMEGA]]), shape=shape
+        handmade(asked, {(0, 0, 0, 0): 2.0 / OMEGA**2}),
+        frequency=np.array([[OMEGA]]),
+        shape=shape,
+        dragged=dragged,
+        dragged_shape=along,
     )
     run = SingleRun(asked, Numerics(modes=1), compliance)
     begun = np.concatenate([run.loop.start[: slot.STATE_SIZE], [SWING, 0.0]])
@@ -63,8 +73,9 @@ def vibrating(gap: float, speed: float) -> tuple[SingleRun, np.ndarray]:
     return run, begun
 
 
+@pytest.mark.parametrize("rubbed", [0.0, 0.9])
 @pytest.mark.parametrize("speed", [0.0, 1e-3, 5e-3, 8e-3])
-def test_a_touch_of_a_vibrating_wall_is_not_missed(speed):
+def test_a_touch_of_a_vibrating_wall_is_not_missed(speed, rubbed):
     """The first root of gap - speed t + SWING cos(omega t) = 0: a wall towards a pad at rest, or a pad
     that comes in slowly from a distance that long steps cross. Control: the wall at its middle
     would touch later than that by more than a sample."""
@@ -72,7 +83,7 @@ def test_a_touch_of_a_vibrating_wall_is_not_missed(speed):
     time = np.linspace(0.0, 5e-3, 1_000_001)
     away = gap - speed * time + SWING * np.cos(OMEGA * time)
     first = time[np.argmax(away < 0.0)]
-    run, _ = vibrating(gap, speed)
+    run, _ = vibrating(gap, speed, rubbed)
     run.begin()
     run.integrate(None)
     touched = np.argmax(run.forces[: run.taken, 0, 1] < 0.0) * run.interval

@@ -22,15 +22,16 @@ from tipoff.lowfi import Numerics
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import step_limit
 
-COUNT, FOUR = 5, Numerics(modes=4)
+COUNT, FOUR, COEFFICIENT = 5, Numerics(modes=4), 0.3
 DAMPED = {"rail.damping.ratios": [0.02, 0.01], "rail.damping.frequencies": [1e3, 5e3]}
 
 
 @pytest.fixture(scope="module")
 def vibrating():
-    """Model, records, and any motion of the modes: walls out by micrometres, at centimetres a
-    second."""
+    """Model, records with friction that drags the walls and has no other force, and any motion of the
+    modes: walls out by micrometres, at centimetres a second."""
     model, system = pressed(REFERENCE.replace(SMOOTH | DAMPED), reference_compliance(), COUNT)
+    system.compliance.workspace.friction[0] = COEFFICIENT
     size = system.compliance.modes.square.size
     random = np.random.default_rng(5)
     return (
