@@ -26,14 +26,13 @@ rest is static::
     U = (F_res + mu D_res) P + S q,   S = W + mu / 2 V,   force on mode m: S_m' P
     F_res = F - sum_m W_m W_m' / omega_m^2,   D_res = D - sum_m (W_m V_m' + V_m W_m') / (2 omega_m^2)
 
-W_iam(travel) is the displacement in mode m, V_iam that along X in the patterns of friction. All modes
-together have all of F and of D. F_res is positive semidefinite: it is the part of the other modes. Modes at rest in
-their static place displace the wall as F + mu D does, and by two small terms more: by mu^2 / 4 V V' / omega^2,
-the square of what friction does (0.04 % of F on ``reference``, 0.11 % on a rail of 11 m), and in the patterns
-beyond the third, which D leaves out (0.2 %).
+W_iam(travel) is the displacement in mode m, V_iam that along X in the patterns of friction. D_res takes W
+in these patterns alone, as D is. All modes together have all of F and of D. F_res is positive semidefinite:
+it is the part of the other modes. Modes at rest in their static place displace the wall as F + mu D does,
+and by two small terms more: by mu^2 / 4 V V' / omega^2, the square of what friction does (0.04 % of F on
+``reference``, 0.11 % on a rail of 11 m), and in the patterns beyond the third, which D leaves out (0.2 %).
 
-A warm rail
-(``mechanics.laws.thermal``) has the thermal offset T = sum_t amount_t warm_t in the same patterns,
+A warm rail (``mechanics.laws.thermal``) has the thermal offset T = sum_t amount_t warm_t in the same patterns,
 to which U is added. Walls from a file that are not straight have a further offset W
 (``mechanics.drawn_walls``). Warm and rigid walls have T and W but no F. On joints of finite
 stiffness this holds for the nominal stiffness, and ``RailCompliance.at`` gives it for a factor
