@@ -69,7 +69,7 @@ def test_all_modes_add_up_to_the_compliance(coarse):
     assert (
         np.abs(without(coarse, main + 1)).max() < 0.2 * size < np.abs(without(coarse, main)).max()
     )
-    heavier = coarse._replace(shape=coarse.shape * np.where(np.arange(180) == main, 1.0005, 1.0))
+    heavier = coarse._replace(swung=coarse.swung * np.where(np.arange(180) == main, 1.0005, 1.0))
     assert np.abs(without(heavier, 180)).max() > 1e-4 * size
 
 
