@@ -124,10 +124,10 @@ CONDITIONS = ("phi0", "phi15", "phi35", "phi60", "phi90", "h1")
     "name, smallest, largest",
     [
         ("titanium", 0.3, 0.4),
-        ("tiny", 0.3, 0.9),
-        ("clamped", 0.3, 1.7),
+        ("tiny", 0.3, 1.0),
+        ("clamped", 0.2, 1.8),
         ("thin", 0.3, 1.8),
-        ("reference", 0.2, 3.7),
+        ("reference", 0.2, 3.8),
     ],
 )
 def test_effect_of_all_modes_over_its_estimate(name, smallest, largest):
