@@ -118,6 +118,12 @@ def test_what_follows_says_where_from():
         ),
         ({"deployer.cubesat": "1u"}, lambda s: s.thrust.springs[0].stroke == pytest.approx(0.103)),
         ({"payload.mass": 6.0}, lambda s: s.payload.inertia.xx == pytest.approx(0.01)),
+        (
+            {"payload.size": [0.3, 0.1, 0.1]},
+            lambda s: (
+                s.payload.inertia.yy == pytest.approx(4.0 * (0.3**2 + 0.1**2) / 12.0, rel=1e-5)
+            ),
+        ),
         ({"rail.leg": 0.02}, lambda s: (s.rail.leg, s.rail.thickness) == (0.02, 0.004)),
         ({"rail.end": 0.2}, lambda s: (s.rail.start, s.rail.end) == (-0.17, 0.2)),
         ({"thrust.springs.0.stroke": 0.3}, lambda s: s.thrust.springs[0].stroke == 0.3),

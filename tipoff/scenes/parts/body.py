@@ -75,19 +75,16 @@ def _inertia(made: Made) -> None:
     if "size" not in payload:
         size = [text(each) for each in (length, diameter, diameter)]
         made.put("payload.size", size, "from length and diameter of the payload")
-    mass = number(payload.get("mass"), "kg", made.bare)
-    if "inertia" in payload:
-        return
-    if mass is None:
-        made.derived["payload.inertia"] = ""
-        return
-    across = mass * (0.75 * diameter**2 + length**2) / 12.0
-    moments = {"xx": mass * diameter**2 / 8.0, "yy": across, "zz": across}
-    made.put(
-        "payload.inertia",
-        {axis: f"{moment!r} kg*m**2" for axis, moment in moments.items()},
-        "assumed: a slender homogeneous cylinder of the mass, length and diameter of the payload",
+
+    def moments(mass: float) -> dict[str, str]:
+        across = mass * (0.75 * diameter**2 + length**2) / 12.0
+        found = {"xx": mass * diameter**2 / 8.0, "yy": across, "zz": across}
+        return {axis: f"{moment!r} kg*m**2" for axis, moment in found.items()}
+
+    source = (
+        "assumed: a slender homogeneous cylinder of the mass, length and diameter of the payload"
     )
+    made.put_inertia(payload, moments, source)
 
 
 def _gravity(made: Made) -> None:

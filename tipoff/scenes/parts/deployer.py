@@ -11,10 +11,11 @@ CubeSat, in mm::
 """
 
 import math
+from functools import partial
 from typing import Any, Literal, NamedTuple, get_args
 
 from tipoff.scenes import pads
-from tipoff.scenes.parts.made import Made, number
+from tipoff.scenes.parts.made import Made
 from tipoff.scenes.parts.profiles import FRICTION
 from tipoff.scenes.table import Table
 
@@ -116,24 +117,17 @@ def _payload(made: Made, own: CubeSat, stated: str) -> None:
     if "size" not in payload:
         size = [_mm(own.long), *map(_mm, own.across)]
         made.put("payload.size", size, f"{stated}, +- 0.1 mm across")
-    mass = number(payload.get("mass"), "kg", made.bare)
-    if "inertia" in payload:
-        return
-    if mass is None:
-        made.derived["payload.inertia"] = ""
-        return
-    moments = {axis: f"{moment:.6g} kg*m**2" for axis, moment in box(mass, own).items()}
-    made.put("payload.inertia", moments, "assumed: a homogeneous box")
+    sides = payload["size"] if isinstance(payload["size"], list) else []
+    lengths = [length for length in map(made.length, sides) if length is not None]
+    if len(lengths) == 3:
+        made.put_inertia(payload, partial(_box, lengths), "assumed: a homogeneous box")
 
 
-def box(mass: float, own: CubeSat) -> dict[str, float]:
-    """Moments of inertia (kg m2) of a homogeneous box of this ``mass`` (kg)."""
-    a, b, c = (1e-3 * side for side in (own.long, *own.across))
-    return {
-        "xx": mass * (b**2 + c**2) / 12.0,
-        "yy": mass * (a**2 + c**2) / 12.0,
-        "zz": mass * (a**2 + b**2) / 12.0,
-    }
+def _box(sides: list[float], mass: float) -> dict[str, str]:
+    """Moments of inertia of a homogeneous box with these ``sides`` (m) and ``mass`` (kg)."""
+    a, b, c = (side**2 for side in sides)
+    moments = {"xx": b + c, "yy": a + c, "zz": a + b}
+    return {axis: f"{mass * sum_ / 12.0:.6g} kg*m**2" for axis, sum_ in moments.items()}
 
 
 def _pads(own: CubeSat) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """A scene under expansion: its tables, which parts change, and what was derived or refused."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from tipoff.scenes import overrides as keys
@@ -29,6 +29,18 @@ class Made(NamedTuple):
         for name, value in values.items():
             if name not in own:
                 self.put(f"{table}.{name}", keys.plain(value), source)
+
+    def put_inertia(
+        self, payload: dict, of_mass: Callable[[float], Mapping[str, str]], source: str
+    ) -> None:
+        """Set the moments of inertia of a ``payload`` that states none; none of a mass that is refused."""
+        if "inertia" in payload:
+            return
+        mass = number(payload.get("mass"), "kg", self.bare)
+        if mass is None:
+            self.derived["payload.inertia"] = ""
+        else:
+            self.put("payload.inertia", dict(of_mass(mass)), source)
 
     def refuse(self, key: str, given: str, expected: str) -> None:
         self.faults.append((key, given, expected))
