@@ -167,7 +167,7 @@ def test_an_edited_calibration_is_bad_input_until_its_digest_is_removed(tmp_path
 def test_every_netcdf_result_carries_a_digest(tmp_path):
     """Those that only users read, too: the stages keep the digests of whole files, and who copies
     one file can check it."""
-    from tipoff.files import require_whole
+    from tipoff.files import FORMAT, FORMAT_KEY, require_whole
     from tipoff.studies.measured import analysis, signals
     from tipoff.studies.measured.sheet import SAMPLES
 
@@ -175,7 +175,7 @@ def test_every_netcdf_result_carries_a_digest(tmp_path):
     signals.write(tmp_path / "measured.nc", [drop._replace(name="a"), drop._replace(name="b")])
     require_whole(tmp_path / "measured.nc")
     with h5py.File(tmp_path / "measured.nc") as file:
-        assert set(file) == {"a", "b"}
+        assert set(file) == {"a", "b"} and file.attrs[FORMAT_KEY] == FORMAT
     flip(tmp_path / "measured.nc", 5000)
     with pytest.raises(ValueError, match="measured.nc differs from its digest"):
         require_whole(tmp_path / "measured.nc")
