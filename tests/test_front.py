@@ -223,6 +223,7 @@ def test_a_data_set_has_the_inputs_of_its_cases(tmp_path, stored):
     expected = Drawn(uncertainty.load("paper", SCENE, cases=3, seed=5))
     for key in expected.keys:
         assert drawn[key].values.tolist() == [row[key] for row in expected.rows(0, 3)]
+    assert "mass_offset.eccentricity 0 to 0.258 mm" in drawn.errors and "errors" not in cases.attrs
 
 
 def test_scenes_are_keys_of_dictionaries():

@@ -19,6 +19,7 @@ from tipoff.lowfi.models import require
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.scenes import halving
 from tipoff.scenes import overrides as keys
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
@@ -66,7 +67,7 @@ def run_many(
     of every clearance, and for a tolerance of 1e-10 (``lowfi.ensemble.twins``). Their time is
     ``sensitivity_wall_s``, which is not part of ``wall_s``. With ``modes="auto"`` all cases have
     one number of modes (``lowfi.ensemble.pilot``); the attributes ``modes`` and ``modes_why`` state
-    it.
+    it. Of an Uncertainty, the attribute ``errors`` has the sizes of its tolerances.
     """
     chosen = Execution(**execution)
     require(scene, model, compliance, calibration, numerics)
@@ -79,6 +80,8 @@ def run_many(
     asked = Ensemble(scene, source, calibration, numerics, compliance)
     ensemble = settled(asked, chosen.store)
     why = {"modes_why": ensemble.modes_why} if ensemble.modes_why else {}
+    if isinstance(source, Drawn):
+        why["errors"] = halving.listed(halving.sizes(source.uncertainty))
     found = _found(ensemble, chosen).assign(_inputs(scene, source))
     return found.assign_attrs(modes=ensemble.numerics.modes, **why)
 

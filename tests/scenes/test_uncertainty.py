@@ -91,6 +91,8 @@ def test_a_factor_multiplies_the_value_of_the_scene():
     assert stated["thrust.peak"]["factor_of"] == scene.thrust.peak
     assert "factor_of" not in stated["payload.mass"]
     assert halving.words(errors, "thrust.peak") == "0.961 to 1.04 times"
+    listed = halving.listed(halving.sizes(errors))
+    assert listed == "payload.mass 9.9 to 9.9 kg, thrust.peak 0.961 to 1.04 times"
     assert not uncertainty.far_from_scene(errors, scene)
 
 

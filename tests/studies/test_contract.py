@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from tests.studies import kept
 from tipoff.faults import SceneError
+from tipoff.scenes import halving
 from tipoff.studies import registry
 from tipoff.studies.cli import app
 from tipoff.studies.runs import stage as runs
@@ -165,3 +166,15 @@ def test_a_text_is_as_it_was(name):
 
 def test_no_text_is_left_of_what_is_gone():
     assert {str(path.relative_to(kept.TEXTS)) for path in kept.TEXTS.rglob("*.*")} == set(TEXTS)
+
+
+def test_each_result_with_errors_of_a_file_prints_their_sizes():
+    """Of all kept results: in the terminal, beside the name of the file."""
+    found = {path.stem: json.loads(path.read_text()) for path in kept.FOLDER.glob("*.json")}
+    drawn = {name for name, result in found.items() if "errors" in result}
+    assert drawn == {"blind", "flight", "measured"}
+    for name in drawn:
+        text = " ".join((kept.TEXTS / "terminal" / f"{name}.txt").read_text().split())
+        sizes = found[name]["sizes"]
+        assert len(sizes) == 3
+        assert halving.with_sizes(found[name]["errors"], sizes) in text

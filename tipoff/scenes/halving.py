@@ -75,13 +75,28 @@ def _whole_turn(item: Distribution) -> bool:
     return isinstance(item, Uniform) and at_most(2.0 * math.pi, item.high - item.low)
 
 
+def sizes(errors: Uncertainty) -> dict[str, str]:
+    """``words`` of each tolerance by its name."""
+    return {name: words(errors, name) for name in tolerances(errors)}
+
+
+def listed(sizes: Mapping[str, str]) -> str:
+    """The ``sizes`` of tolerances by their names as one line."""
+    return ", ".join(f"{name} {size}" for name, size in sizes.items())
+
+
+def with_sizes(file: str, sizes: Mapping[str, str]) -> str:
+    """The ``file`` of errors or its name, with the ``sizes`` of its tolerances in brackets."""
+    return f"{file} ({listed(sizes)})" if sizes else file
+
+
 def words(errors: Uncertainty, name: str) -> str:
     """The ranges that have 95 % of the values of a tolerance, with their units."""
     own = [key for key in tolerances(errors)[name] if not _whole_turn(errors.vary[key])]
-    shown = [range_of(errors, key) for key in own]
-    if len(own) == 1 or len(set(shown)) == 1:
-        return shown[0]
-    return ", ".join(f"{key.rpartition('.')[2]} {text}" for key, text in zip(own, shown))
+    ranges = [range_of(errors, key) for key in own]
+    if len(own) == 1 or len(set(ranges)) == 1:
+        return ranges[0]
+    return ", ".join(f"{key.rpartition('.')[2]} {text}" for key, text in zip(own, ranges))
 
 
 def range_of(errors: Uncertainty, key: str) -> str:
@@ -90,14 +105,17 @@ def range_of(errors: Uncertainty, key: str) -> str:
     item, unit = errors.vary[key], unit_of(key) or ""
     if key.endswith(".radial") and _whole_turn(item):
         return "any direction"
-    if key in errors.factors:
-        unit = ""
-    name = _SHOWN.get(unit, unit)
-    factor = COMMON_FACTORS[unit][name] if name != unit else 1.0
     from_zero = key.endswith(".axial") and float(item.ppf(np.array(0.0))) == 0.0
     ends = (0.0, _SPAN) if from_zero else (0.5 - 0.5 * _SPAN, 0.5 + 0.5 * _SPAN)
-    low, high = (float(item.ppf(np.array(share))) / factor for share in ends)
-    text = f"{low:.3g}" if high - low <= 1e-12 * abs(high) else f"{low:.3g} to {high:.3g}"
-    if key in errors.factors:
-        return f"{text} times"
+    low, high = (float(item.ppf(np.array(share))) for share in ends)
+    return f"{shown(low, high, '')} times" if key in errors.factors else shown(low, high, unit)
+
+
+def shown(low: float, high: float, unit: str) -> str:
+    """The range from ``low`` to ``high``, in the SI ``unit``, as text in a unit that is usual for errors."""
+    name = _SHOWN.get(unit, unit)
+    factor = COMMON_FACTORS[unit][name] if name != unit else 1.0
+    text = f"{low / factor:.3g}"
+    if high - low > 1e-12 * abs(high):
+        text += f" to {high / factor:.3g}"
     return text if unit in ("", "dimensionless") else f"{text} {name}"

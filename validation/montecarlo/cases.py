@@ -4,7 +4,7 @@ from typing import Any
 
 from tipoff.lowfi.ensemble.derived import Derived
 from tipoff.lowfi.ensemble.rows import Drawn
-from tipoff.scenes import uncertainty
+from tipoff.scenes import halving, uncertainty
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.populations import random_factors
@@ -19,9 +19,12 @@ def source(scene: Scene, asked: Cases, cases: int) -> Derived | Drawn:
     return Drawn(_errors(asked, asked.vary, scene, cases))
 
 
-def words(asked: Cases) -> str:
-    """The random errors as text."""
-    return asked.reading.words if asked.vary is None else f"distributions of {asked.vary}"
+def words(scene: Scene, asked: Cases) -> str:
+    """The random errors of a ``scene`` as text, those of a file with their sizes."""
+    if asked.vary is None:
+        return asked.reading.words
+    sizes = halving.sizes(_errors(asked, asked.vary, scene, asked.cases))
+    return f"distributions of {halving.with_sizes(asked.vary, sizes)}"
 
 
 def inputs(scene: Scene, asked: Cases) -> dict[str, Any]:

@@ -67,7 +67,7 @@ def run(study: Study, options: Cases = Cases()) -> Made[MonteCarlo]:
         made = MonteCarlo(
             **population.answering(study, found.model),
             asked=options,
-            reading=cases.words(options),
+            reading=cases.words(study.scene, options),
             store=found.store,
             counts=found.counts,
             settled=settled,

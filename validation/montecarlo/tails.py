@@ -61,7 +61,7 @@ def run(study: Study, options: Options) -> Made[Tails]:
         made = Tails(
             **population.answering(study, model),
             asked=options,
-            reading=cases.words(asked),
+            reading=cases.words(study.scene, asked),
             store=whole.store,
             cases=len(whole.settled),
             settled=int(whole.settled.sum()),

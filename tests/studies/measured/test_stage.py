@@ -187,7 +187,7 @@ def test_tests_are_judged_by_the_errors_condition_and_seed_that_are_asked_for(
     assert narrow["varied"]["seed"] == 4 and seeded["varied"]["seed"] == 5
     assert narrow["request"]["vary"] == str(errors) and other["request"]["condition"] == "phi60"
     shown = document.terminal(page.draw(stage.STAGE.read(other)))
-    assert f"of condition phi60; errors of {errors}, seed 4" in shown
+    assert f"of condition phi60; errors of {errors} (" in shown and "), seed 4" in shown
     study = Study(load("reference"), tmp_path / "reference", Settings())
     assert stage.STAGE.stored(study).document == other
     errors.write_text(lines.format("0.1"))

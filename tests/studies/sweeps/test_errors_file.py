@@ -87,7 +87,13 @@ def test_rates_of_a_free_payload_over_the_sizes_of_the_file(tmp_path, monkeypatc
         exact = 1e-3 * free_flight.RATE_PER_METRE * np.array(factor.sizes)
         assert np.array(factor.largest["rate_deg_s"]) == pytest.approx(exact, rel=5e-3)
         assert factor.sizes[-1] == 0.74
-    assert vary in terminal(page.draw(found)).replace("\n", "")
+    shown = " ".join(terminal(page.draw(found)).split())
+    assert vary in shown.replace(" ", "")
+    # what is not swept, with its size, and how far the swept one goes
+    assert found.held == {"payload.mass": "0.905 to 1.1 times"}
+    assert "payload.mass 0.905 to 1.1 times" in shown and "thrust eccentricity 0.74 mm" in shown
+    other = sweeps.run(study, Options(angles=8)).result
+    assert not other.held and "not swept" not in terminal(page.draw(other))
     written(tmp_path, POLAR.replace("0.2 mm", "0.4 mm"))
     again = sweeps.run(study, Options(vary=vary, angles=8)).result
     assert again.launches[0].factors[0].sizes[-1] == 1.5

@@ -2,6 +2,7 @@
 
 import math
 
+from tipoff.scenes import halving
 from tipoff.studies.agreement import distribution_page
 from tipoff.studies.agreement.page import judged, summary
 from tipoff.studies.blind.stage import Blind
@@ -24,7 +25,7 @@ def draw(found: Blind) -> list[Part]:
     )
     return [
         f"{len(found.conditions)} conditions drawn with seed {found.seed}{origin}, from the "
-        f"distributions “{found.errors}”.",
+        f"distributions {halving.with_sizes(found.errors, found.sizes)}.",
         f"Compliant contact, no fitted constants: {summary(compliant)}.",
         judged(compliant, "blind-compliant", (note,)),
         f"Calibrated springs: {summary(calibrated)}.",

@@ -12,7 +12,7 @@ from pathlib import Path
 from tipoff import sources
 from tipoff.files import content_hash
 from tipoff.lowfi.ensemble.rows import Drawn
-from tipoff.scenes import uncertainty
+from tipoff.scenes import halving, uncertainty
 from tipoff.studies.agreement import judging, verdicts
 from tipoff.studies.agreement.candidates import calibrated, compliant
 from tipoff.studies.agreement.distributions import Distribution
@@ -31,10 +31,12 @@ _CODE = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration")
 class Blind:
     """Rows of ``calibrated`` springs and of ``compliant`` contact, ``growth`` of a 1 um disturbance
     and ``distributions``, as in the agreement study, and the drawn ``conditions``: overrides in SI, from
-    the distributions ``errors``: a file, or its name in the catalogue."""
+    the distributions ``errors``: a file, or its name in the catalogue; ``sizes``: 95 % of the values of each
+    tolerance (``scenes.halving``)."""
 
     asked: Options
     errors: str
+    sizes: dict[str, str]
     seed: int
     gates: Gates
     converged_deg_s: float
@@ -58,6 +60,7 @@ def run(study: Study, options: Options = Options()) -> Made[Blind]:
         return Blind(
             asked=options,
             errors=uncertainty.chosen(options.vary, study.scene),
+            sizes=halving.sizes(_drawn(study, options).uncertainty),
             seed=seed_of(study, options),
             gates=verdicts.gates(study.scene),
             converged_deg_s=verdicts.CONVERGED_DEG_S,
@@ -74,18 +77,9 @@ def run(study: Study, options: Options = Options()) -> Made[Blind]:
 def with_drawn_conditions(study: Study, options: Options) -> Study:
     """The study of the drawn conditions, in the same folder. All are held out. Each has its own
     floor and refinements, because another condition may be chaotic."""
-    source = Drawn(
-        uncertainty.load(
-            uncertainty.chosen(options.vary, study.scene),
-            study.scene,
-            cases=options.cases or CASES,
-            seed=seed_of(study, options),
-            sampling="random",
-        )
-    )
+    source = _drawn(study, options)
     conditions = {
-        f"blind{number + 1}": row
-        for number, row in enumerate(source.rows(0, options.cases or CASES))
+        f"blind{number + 1}": row for number, row in enumerate(source.rows(0, source.asked))
     }
     names = list(conditions)
     roles = {
@@ -95,6 +89,18 @@ def with_drawn_conditions(study: Study, options: Options) -> Study:
         "agreement.refined": names,
     }
     return replace(study, scene=study.scene.replace({"conditions": conditions, **roles}), only=())
+
+
+def _drawn(study: Study, options: Options) -> Drawn:
+    return Drawn(
+        uncertainty.load(
+            uncertainty.chosen(options.vary, study.scene),
+            study.scene,
+            cases=options.cases or CASES,
+            seed=seed_of(study, options),
+            sampling="random",
+        )
+    )
 
 
 def seed_of(study: Study, options: Options) -> int:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 
+from tipoff.scenes import halving
 from tipoff.studies.flight.results import Condition, Curves, Flight, ManyFlights, Orbit
 from tipoff.studies.flight.summary import BY_NAME
 from tipoff.studies.populations import answers, population
@@ -91,9 +92,9 @@ def table_of_conditions(
 def _cases(found: Flight) -> Table:
     many = found.cases
     shares = [row.share for row in next(iter(many.quantiles.values()), ())]
-    counts = many.counts
+    counts, errors = many.counts, halving.with_sizes(found.errors, found.sizes)
     notes = (
-        f"{counted(counts['asked'], 'case')} with errors of {found.errors}: {counts['ok']:,} ok, "
+        f"{counted(counts['asked'], 'case')} with errors of {errors}: {counts['ok']:,} ok, "
         f"{counts['refused']:,} refused, {counts['failed']:,} failed; {many.settled:,} flown.{_touching(many)}",
         "Each share of the cases is below the value of its column. In brackets: bounds at "
         f"{many.confidence:.0%} confidence ({many.bounds}).",

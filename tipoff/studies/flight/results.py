@@ -88,10 +88,12 @@ class ManyFlights:
 @dataclass(frozen=True, kw_only=True)
 class Flight(Answering):
     """Flights of all conditions and of many cases of a ``scene``; ``errors``: the file of distributions of
-    the cases, or its name in the catalogue; ``data``: the file of all values."""
+    the cases, or its name in the catalogue; ``sizes``: 95 % of the values of each tolerance
+    (``scenes.halving``); ``data``: the file of all values."""
 
     scene: str
     errors: str
+    sizes: dict[str, str]
     flight: Orbit
     conditions: tuple[Condition, ...]
     curves: list[Curves]  # a list does not go to a CSV file

@@ -9,7 +9,7 @@ from tipoff.faults import Fault, SceneError
 from tipoff.files import write_netcdf
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.rows import Drawn
-from tipoff.scenes import uncertainty
+from tipoff.scenes import halving, uncertainty
 from tipoff.scenes.effects.registry import body_forces
 from tipoff.scenes.variation import Variations
 from tipoff.studies.flight import bodies, curves, flown, summary
@@ -53,6 +53,7 @@ def run(study: Study, options: Options = Options()) -> Made[Flight]:
             **population.answering(study, whole.model),
             scene=study.scene.name,
             errors=vary,
+            sizes=halving.sizes(drawn.uncertainty),
             flight=summary.orbit(study.scene),
             conditions=tuple(rows),
             curves=shapes,

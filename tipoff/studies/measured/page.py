@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from tipoff.scenes import halving
 from tipoff.studies.measured import judgement, power
 from tipoff.studies.measured.judgement import MAGNITUDES
 from tipoff.studies.measured.launch import page as launches
@@ -63,7 +64,7 @@ def _heads(found: Measurements) -> list[Part]:
     """What was compared with what, and a warning on logs that are simulated."""
     request, cases = found.request, found.cases
     condition = f" of condition {request.condition}" if request.condition else ""
-    given = f"errors of {found.errors}, seed {found.varied.seed}"
+    given = f"errors of {halving.with_sizes(found.errors, found.sizes)}, seed {found.varied.seed}"
     parts: list[Part] = []
     if cases is not None:
         parts.append(

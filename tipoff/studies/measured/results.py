@@ -204,11 +204,13 @@ class Comparison:
 @dataclass(frozen=True, kw_only=True)
 class Measurements(Compared, Answering):
     """The result of the study of a ``scene``; ``errors``: the file of distributions of the cases, or its
-    name in the catalogue; ``data``: the file of all signals of drop tests, None without any."""
+    name in the catalogue; ``sizes``: 95 % of the values of each tolerance (``scenes.halving``); ``data``: the
+    file of all signals of drop tests, None without any."""
 
     scene: str
     request: Options
     errors: str
+    sizes: dict[str, str]
     varied: Varied
     data: str | None
     launches: tuple[Launch, ...] = ()

@@ -17,7 +17,7 @@ import numpy as np
 from tipoff.faults import Fault, SceneError, together
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.mechanics.instant import MOST, SETTLED, Instant
-from tipoff.scenes import uncertainty
+from tipoff.scenes import halving, uncertainty
 from tipoff.scenes.scene import Scene
 from tipoff.studies.measured import analysis, judgement, power, sheet, signals
 from tipoff.studies.measured.analysis import Drop
@@ -96,6 +96,7 @@ def run(study: Study, options: Options = Options()) -> Made[Measurements]:
             scene=study.scene.name,
             request=options,
             errors=_vary(study, options),
+            sizes=halving.sizes(drawn.uncertainty),
             varied=uncertainty.Varied(**drawn.uncertainty.resolved()),
             data=None if data is None else study.relative(data),
         )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from tipoff.mechanics import instant
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.run_limits import EXIT_WINDOW, SETTLE_WINDOW
+from tipoff.scenes import halving
 from tipoff.studies.nominal.spread import QUANTITIES, Range, Spread
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
 from tipoff.studies.render.document import Caption, KeyFigures, Part
@@ -112,8 +113,8 @@ def _of_spread(spread: Spread | None) -> list[str]:
     if spread is None:
         return [_NO_ERRORS]
     cases, lost = spread.cases, spread.cases - spread.settled
-    sizes = ", ".join(f"{name} {words}" for name, words in spread.sizes.items())
-    errors = f"{cases:,} launches of compliant contact with the errors {spread.errors} ({sizes})"
+    stated = halving.with_sizes(spread.errors, spread.sizes)
+    errors = f"{cases:,} launches of compliant contact with the errors {stated}"
     if spread.ranges is None:
         return [f"No range: {counted(spread.settled, 'case')} of {errors} settled"]
     at = f", {instant.where(spread.at)}" if spread.at == instant.EXIT else ""

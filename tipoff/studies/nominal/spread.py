@@ -100,7 +100,7 @@ def of_scene(study: Study, scene: Scene) -> Spread | None:
     assert scene.studies is not None and scene.studies.errors is not None
     return Spread(
         errors=scene.studies.errors,
-        sizes={name: halving.words(stated, name) for name in halving.tolerances(stated)},
+        sizes=halving.sizes(stated),
         seed=stated.seed,
         cases=cases,
         settled=int(found.settled.sum()),

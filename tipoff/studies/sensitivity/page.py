@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from tipoff.scenes import halving
 from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import Chart, Line, Panel, Picture
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Column, Table, span
+from tipoff.studies.render.table import Column, Table
 from tipoff.studies.render.uncertain import Measured, number, uncertain
 from tipoff.studies.sensitivity.contact_table import Axes, PerturbedRun
 from tipoff.studies.sensitivity.indices import Indices
@@ -113,7 +114,7 @@ def draw(found: Sensitivity) -> list[Part]:
         _used(found.sobol),
         table_of_indices(found.sobol),
         *figures(found),
-        _inputs(found.sobol),
+        *_inputs(found.sobol),
     ]
 
 
@@ -229,21 +230,18 @@ def _still(row: PerturbedRun) -> bool:
     )
 
 
-def _inputs(sobol: Sobol) -> Fold:
-    """The inputs that vary with their distributions and provenance, and those that do not."""
+def _inputs(sobol: Sobol) -> list[Part]:
+    """The inputs that vary with their sizes, distributions and provenance, and those that do not."""
     left = [f"{name_of(key)}: {reason}" for key, reason in sobol.left_out.items()]
     table = Table.of_records(
         sobol.inputs,
         ("input", lambda item: name_of(item.key)),
         ("distribution", lambda item: item.distribution + (" factor" if item.factor else "")),
-        "nominal",
-        ("95 % within", lambda item: span(item.low, item.high, ".4g")),
-        ("unit", lambda item: item.unit or "SI"),
+        ("95 % of its values", lambda item: halving.shown(item.low, item.high, item.unit)),
         "provenance",
         dense=True,
     )
-    parts = [table, "Left out:" if left else "", Bullets(left)]
-    return Fold("Inputs and their distributions", parts)
+    return [table, "Left out:", Bullets(left)] if left else [table]
 
 
 def _bars(sobol: Sobol, rates: _Indexed) -> Picture:

@@ -34,12 +34,12 @@ class Varied:
 
     key: Annotated[str, Column("input")]
     unit: str
-    nominal: Annotated[float | None, Column("nominal", form=".4g")]
+    nominal: float | None
     low: float  # SI, or a factor
     high: float
     factor: bool
     distribution: str
-    provenance: Annotated[str | None, Column("provenance")]
+    provenance: Annotated[str | None, Column("provenance", detail=True)]
 
 
 @dataclass(frozen=True, kw_only=True)

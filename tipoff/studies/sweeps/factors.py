@@ -15,7 +15,7 @@ from tipoff.faults import Fault, SceneError
 from tipoff.lowfi.ensemble.rows import Listed, numbers
 from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust
-from tipoff.scenes import launch, moments, polar, scene_model, uncertainty
+from tipoff.scenes import halving, launch, moments, polar, scene_model, uncertainty
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 
@@ -72,6 +72,14 @@ def of_file(vary: str, scene: Scene) -> tuple[Factor, ...]:
         given = ", ".join(errors.vary)
         raise SceneError([Fault(vary, "vary, factor", given, f"a size above zero of {tables}")])
     return found
+
+
+def held(vary: str, scene: Scene) -> dict[str, str]:
+    """The other tolerances of a file of errors with their sizes (``scenes.halving``), by name. Their values are
+    those of the scene in each case of a sweep."""
+    swept = {factor.table for factor in FACTORS}
+    sizes = halving.sizes(uncertainty.load(vary, scene))
+    return {name: size for name, size in sizes.items() if name not in swept}
 
 
 def _largest(errors: Uncertainty, table: str) -> float:

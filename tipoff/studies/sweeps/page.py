@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
+from tipoff.scenes import halving
 from tipoff.studies.populations import answers, population
 from tipoff.studies.render.document import Bullets, Caption, Fold, Heading, Part
 from tipoff.studies.render.table import Column, Noted, Table, number, percent, span
@@ -59,7 +60,13 @@ def _runs(found: Sweeps) -> list[Part]:
     if found.asked.vary is not None:
         lines.append(
             f"errors of {found.asked.vary}, each alone in every direction, up to the size that 99.9 % of its "
-            "draws stay below; its other inputs are not swept"
+            "draws stay below"
+        )
+    if found.held:
+        lines.append(
+            "not swept, because they have no direction; each has the value of the scene: "
+            f"{halving.listed(found.held)}. tipoff ensemble --halve varies all errors together, and says what "
+            "each one does"
         )
     return [Bullets(lines), table]
 
@@ -107,8 +114,9 @@ def table_of_largest(launch: Launch) -> Table:
         (item.title, *(most(factor.largest[item.name]) for factor in launch.factors))
         for item in answers.ALL
     ]
-    note = "Largest magnitude of the cases that leave, over all sizes and directions."
-    return Table(["largest", *(factor.label for factor in launch.factors)], rows, notes=(note,))
+    ends = ", ".join(f"{item.label} {item.sizes[-1]:g} {item.unit}" for item in launch.factors)
+    note = f"Largest magnitude of the cases that leave, over all directions and all sizes up to: {ends}."
+    return Table(["largest", *(item.label for item in launch.factors)], rows, notes=(note,))
 
 
 def _details(launch: Launch) -> list[Part]:

@@ -67,7 +67,8 @@ class Launch:
 @dataclass(frozen=True, kw_only=True)
 class Sweeps(Answering):
     """``launches``: the scene as given, and with a stretched thrust if this changes the impulse
-    after the exit."""
+    after the exit; ``held``: sizes by name of the tolerances of a file of errors that are not swept."""
 
     asked: Options
+    held: dict[str, str]
     launches: tuple[Launch, ...]

@@ -48,6 +48,7 @@ def run(study: Study, options: Options = Options()) -> Made[Sweeps]:
         found = Sweeps(
             **population.answering(study, alone),
             asked=options,
+            held={} if options.vary is None else factors.held(options.vary, study.scene),
             launches=tuple(launches),
         )
         return with_figures(found, drawing.figures, study.path("figures"))
@@ -60,8 +61,10 @@ def _swept_errors(study: Study, options: Options) -> tuple[Factor, ...]:
 
 
 def _inputs(study: Study, options: Options) -> Any:
-    """The errors of a file with their largest sizes; None without one."""
-    return None if options.vary is None else _swept_errors(study, options)
+    """The errors of a file with their largest sizes, and those that are held; None without one."""
+    if options.vary is None:
+        return None
+    return _swept_errors(study, options), factors.held(options.vary, study.scene)
 
 
 STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Sweeps)
