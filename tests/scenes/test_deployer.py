@@ -12,7 +12,7 @@ import tipoff.toml
 from tests.exact.spring import end_of_stroke
 from tests.lowfi.support import IMMOVABLE
 from tipoff import lowfi
-from tipoff.scenes import SceneError, load, parse, provenance
+from tipoff.scenes import load, parse, provenance
 from tipoff.scenes.parts.deployer import Form
 from tipoff.scenes.variation import Variations
 from tipoff.studies.cli import app
@@ -149,26 +149,6 @@ def test_pads_of_the_user_are_kept():
     scene = deployer(pads=pads)
     assert {pad.length for pad in scene.pads} == {0.02} and scene.rail == deployer().rail
     assert scene.replace({"pads.0.length": 0.01}).pads[0].length == 0.01
-
-
-@pytest.mark.parametrize(
-    "tables, keys",
-    [
-        ({"deployer": {"cubesat": "4u"}}, {"deployer.cubesat"}),
-        ({"deployer": {}}, {"deployer.cubesat"}),
-        ({"deployer": "3u"}, {"deployer"}),
-        ({"deployer": {"cubesat": ["3u"], "door": 1}}, {"deployer.cubesat", "deployer.door"}),
-        ({"payload": {"mass": "4 m"}}, {"payload.mass"}),
-        ({"buttons": [{"place": "0 m", "profile": "1010"}]}, {"deployer"}),
-        ({"rail": "none", "thrust": 3, "contact": []}, {"rail", "thrust", "contact"}),
-    ],
-)
-def test_every_fault_of_a_deployer_is_listed(tables, keys):
-    with pytest.raises(SceneError) as caught:
-        deployer(**tables)
-    found = [fault.key for fault in caught.value.faults]
-    assert keys <= set(found) and len(found) == len(set(found)), found
-    assert not {"pads", "rail.start", "rail.end", "payload.inertia"} & set(found)
 
 
 def test_the_command_prints_what_follows(tmp_path):

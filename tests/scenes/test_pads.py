@@ -2,10 +2,8 @@
 
 import copy
 
-import pytest
-
 from tests.scenes.support import small
-from tipoff.scenes import SceneError, load, parse, provenance
+from tipoff.scenes import load, parse, provenance
 
 PATTERN = {"stations": ["-0.08 m", "0.08 m"], "corner": ["0.1 m", "+50 mm"], "relief": "20 um"}
 LISTED = [
@@ -54,22 +52,3 @@ def test_a_file_changes_one_key_of_an_inherited_pattern(tmp_path):
     assert [pad.position for pad in found.pads] == [pad.position for pad in base.pads]
     assert provenance.nearest(found.provenance, "pads.3.relief") == "user"
     assert provenance.nearest(found.provenance, "pads.3.length") == "assumed"
-
-
-@pytest.mark.parametrize(
-    "change, key",
-    [
-        ({"stations": []}, "pads.stations"),
-        ({"stations": "0 m"}, "pads.stations"),
-        ({"stations": 2000 * ["0 m"]}, "pads.stations"),
-        ({"corner": ["1 m"]}, "pads.corner"),
-        ({"normals": ["+y"]}, "pads.normals"),
-        ({"corner": ["1 kg", "1 m"]}, "pads.0.position.1"),
-        ({"corner": [True, "1 m"]}, "pads.0.position.1"),
-        ({"colour": "red"}, "pads.7.colour"),
-    ],
-)
-def test_faults_of_a_pattern(change, key):
-    with pytest.raises(SceneError) as caught:
-        with_pads(PATTERN | change)
-    assert key in [fault.key for fault in caught.value.faults]

@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import tipoff.toml
-from tipoff.scenes import SceneError, drawing, load, parse, provenance
+from tipoff.scenes import drawing, load, parse, provenance
 from tipoff.scenes.variation import Variations
 from tipoff.studies.cli import app
 
@@ -125,57 +125,6 @@ def test_parts_written_out_are_the_same_scene_by_hand():
     by_hand = scene.written_out()
     assert len(by_hand["pads"]) == 12 and not {"buttons", "origin"} & set(by_hand)
     assert parse(by_hand).hash == scene.hash
-
-
-@pytest.mark.parametrize(
-    "tables, keys",
-    [
-        ({"pads": [{"position": ["0 m"] * 3, "normals": ["+y"]}]}, ["pads"]),
-        ({"buttons": []}, ["buttons"]),
-        (
-            {"buttons": [{"place": "1 kg", "profile": "2020"}]},
-            ["buttons.0.place", "buttons.0.profile"],
-        ),
-        ({"buttons": [{"place": "1 m"}]}, ["rail.section"]),
-        (
-            {
-                "buttons": [
-                    {"place": "0.3 m", "profile": "1515", "neck": "9 mm", "head": "30 mm"},
-                    {"place": "1 m", "neck_height": "1 mm"},
-                ]
-            },
-            ["buttons.0.neck", "buttons.0.head", "buttons.1.neck_height", "buttons.1.head_to_lip"],
-        ),
-        (
-            {
-                "buttons": [
-                    {"place": "1 m", "profile": "1515", "neck": "7 mm", "neck_to_slot": "1 mm"}
-                ]
-            },
-            ["buttons.0.neck_to_slot"],
-        ),
-        (
-            {"payload": {"mass": "1 kg", "length": "1 m"}},
-            ["payload.mass_centre", "payload.diameter"],
-        ),
-        ({"payload": {**ROCKET["payload"], "mass": "4 m"}}, ["payload.mass"]),
-        ({"gravity": {"inclination": "84 deg", "x": "1 m/s**2"}}, ["gravity.x"]),
-        ({"origin": "middle"}, ["origin"]),
-    ],
-)
-def test_every_fault_of_a_part_is_listed(tables, keys):
-    with pytest.raises(SceneError) as caught:
-        rocket(**tables)
-    found = [fault.key for fault in caught.value.faults]
-    assert set(keys) <= set(found), found
-    assert len(found) == len(set(found))
-    assert "payload.inertia" not in found or "payload.diameter" in found
-
-
-def test_a_mass_centre_without_an_origin_is_refused():
-    tables = {key: value for key, value in ROCKET.items() if key != "origin"}
-    with pytest.raises(SceneError, match="payload.mass_centre.*origin"):
-        parse(tables)
 
 
 def test_the_command_writes_out_and_draws_a_file(tmp_path):

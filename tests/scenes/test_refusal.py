@@ -2,12 +2,19 @@
 
 import pytest
 
-from tests.scenes.support import CONTACT, FRICTION, STICKING, refused, small, write
+from tests.scenes import refusals
+from tests.scenes.support import CONTACT, FRICTION, refused, small, write
 from tipoff.scenes import SceneError, load, parse
 from tipoff.scenes.variation import Variations
 
 pytestmark = pytest.mark.case("X19")
 
+# of each module of ``refusals``
+TABLES = [
+    pytest.param(module.made, asked, id=f"{name} {number} {asked.keys[:40]}")
+    for name, module in refusals.modules()
+    for number, asked in enumerate(module.CASES)
+]
 PLATFORM = {"mass": "80 kg", "inertia": {"xx": "5 kg*m**2", "yy": "5 kg*m**2", "zz": "5 kg*m**2"}}
 
 # key of the fault: (where it is put, what is given, a word of what is expected)
@@ -114,6 +121,15 @@ def test_every_bad_field_is_in_one_error():
         assert str(faults[key]) in text and faults[key].source == "file.toml"
     for word in ("Traceback", "pydantic", "ValidationError", "Table", "line ", "type=", "0x"):
         assert word not in text
+
+
+@pytest.mark.parametrize(("made", "asked"), TABLES)
+def test_a_table_is_refused_with_the_keys_of_its_faults(tmp_path, made, asked):
+    """Exactly these."""
+    with pytest.raises(SceneError) as caught:
+        made(refusals.in_folder(asked.change, tmp_path))
+    assert sorted(fault.key for fault in caught.value.faults) == sorted(asked.keys.split())
+    assert [words for words in asked.words if words not in str(caught.value)] == []
 
 
 @pytest.mark.parametrize("key", BAD)
@@ -223,93 +239,6 @@ def test_poisson_ratio_on_both_sides_of_its_bounds(ratio, sound):
 def test_triangle_inequality_on_both_sides(zz, sound):
     raw = small(payload__inertia={"xx": "1 kg*m**2", "yy": "1 kg*m**2", "zz": f"{zz!r} kg*m**2"})
     assert parse(raw) if sound else refused(raw)[0].key == "payload.inertia"
-
-
-def test_products_of_inertia_count():
-    """The diagonal alone satisfies the inequality; the principal moments 0.1, 1, 1.9 do not."""
-    raw = small(
-        payload__inertia={
-            "xx": "1 kg*m**2",
-            "yy": "1 kg*m**2",
-            "zz": "1 kg*m**2",
-            "xy": "0.9 kg*m**2",
-        }
-    )
-    assert "triangle" in refused(raw)[0].expected
-
-
-@pytest.mark.parametrize(
-    "table, missing",
-    [
-        ("payload", {"mass", "inertia"}),
-        ("friction", set(FRICTION)),
-        ("contact", {"law"}),
-        ("thrust", {"kind"}),
-        ("rail", {"start", "end", "material"}),
-        ("pads", None),
-    ],
-)
-def test_empty_tables(table, missing):
-    faults = refused(small(**{table: [] if table == "pads" else {}}))
-    expected = {"pads"} if missing is None else {f"{table}.{key}" for key in missing}
-    assert {fault.key for fault in faults} == expected
-
-
-@pytest.mark.parametrize("table", ["initial", "gravity", "thrust_offset", "mass_offset", "output"])
-def test_an_empty_effect_would_be_present_and_do_nothing(table):
-    assert [fault.key for fault in refused(small(**{table: {}}))] == [table]
-
-
-@pytest.mark.parametrize("table", ["payload", "rail", "thrust", "pads"])
-def test_missing_tables(table):
-    raw = small()
-    del raw[table]
-    (fault,) = refused(raw)
-    assert (fault.key, fault.given) == (table, "nothing")
-
-
-@pytest.mark.parametrize(
-    "change, key",
-    [
-        ({"thrust__kind": "gauss"}, "thrust.kind"),
-        ({"thrust__impulse": "1 N*s"}, "thrust"),
-        ({"thrust__rescale": True}, "thrust.rescale"),
-        ({"rail__end": "-0.2 m"}, "rail.end"),
-        ({"rail__thickness": "24 mm"}, "rail.thickness"),
-        ({"rail__mount_width": "25 mm"}, "rail.mount_width"),
-        ({"rail__mounts": [{"start": "0 m", "end": "0.3 m"}]}, "rail.mounts"),
-        ({"rail__mounts": [{"start": "2 m", "end": "1 m"}]}, "rail.mounts.0.end"),
-        ({"rail__mounts": "all"}, "rail.mounts"),
-        ({"pads": [{"position": ["0 m"] * 4, "normals": ["+y"]}]}, "pads.0.position"),
-        ({"pads": [{"position": ["0 m"] * 3, "normals": ["+y", "+y"]}]}, "pads.0.normals"),
-        ({"pads": [{"position": ["0 m"] * 3, "normals": ["+x"]}]}, "pads.0.normals.0"),
-        ({"contact": CONTACT | {"law": "hertz"}}, "contact.law"),
-        ({"contact": CONTACT | {"exponent": 2.0}}, "contact.stiffness"),
-        ({"contact": CONTACT | {"exponent": "x"}}, "contact.exponent"),
-        ({"friction": FRICTION | {"law": "sticky"}}, "friction.law"),
-        ({"friction": STICKING | {"dynamic": 0.5}}, "friction.dynamic"),
-        ({"friction": STICKING | {"static_speed": "1 mm/s"}}, "friction.static_speed"),
-        ({"friction": STICKING | {"stiffness": "1 N/mm**2"}}, "friction.stiffness"),
-        ({"friction": STICKING | {"capture_speed": "0.1 nm/s"}}, "friction.capture_speed"),
-        ({"gravity": {"w": "1 m/s**2"}}, "gravity.w"),
-        ({"frictoin": FRICTION}, "frictoin"),
-        ({"provenance": {"payload.mas": "paper"}}, "provenance.payload.mas"),
-        ({"agreement": {"fitted": ["a"]}}, "agreement.fitted"),
-        (
-            {"conditions": {"a": {}}, "agreement": {"fitted": ["a"], "held_out": ["a"]}},
-            "agreement.held_out",
-        ),
-    ],
-)
-def test_other_faults_name_their_key(change, key):
-    (fault,) = refused(small(**change))
-    assert fault.key == key
-
-
-def test_not_a_mapping():
-    assert [fault.expected for fault in refused([1, 2])] == [
-        "values by their keys, as a dict or another mapping"
-    ]
 
 
 CONDITION_FAULTS = {

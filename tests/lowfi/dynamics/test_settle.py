@@ -9,7 +9,6 @@ from tests.lowfi.support import PAPER_PAD, G, corners, scene
 from tipoff import lowfi, scenes
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.dynamics import settle
-from tipoff.scenes import SceneError
 
 MASS, START = 20.0, 5e-3  # kg; s, start of the thrust
 SETTLED = {"initial": {"settled": True}}
@@ -81,28 +80,6 @@ def test_a_payload_rests_on_an_inclined_rail_that_holds_it():
         np.testing.assert_allclose(sums(run, asked)[:, 2], 0.4 * G, rtol=1e-8)
     sliding = lowfi.run(asked.replace({"hold_down.release": 0.0}), "springs")
     assert sliding.velocity[before][-1, 0] < -0.02
-
-
-@pytest.mark.parametrize(
-    "changed, words",
-    [
-        ({"gravity": None}, "gravity: given nothing, expected a weight"),
-        ({"contact": None, "friction": None}, "contact: given nothing"),
-        (
-            {"platform": {"mass": 50.0, "inertia": {"xx": 1.0, "yy": 1.0, "zz": 1.0}}},
-            "free platform",
-        ),
-        ({"initial.velocity.z": 1e-3}, "initial: given a velocity"),
-    ],
-)
-def test_what_is_refused(changed, words):
-    with pytest.raises(SceneError, match=words):
-        lowfi.run(on_springs(**SETTLED).replace(changed), "springs")
-
-
-def test_a_payload_that_no_wall_holds_finds_no_rest():
-    with pytest.raises(SceneError, match=r"initial\.settled.*expected walls and a weight"):
-        lowfi.run(on_springs(pads=corners(normals="y"), **SETTLED), "springs")
 
 
 def test_cases_rest_too():

@@ -90,7 +90,3 @@ def test_what_cannot_be_taken_out_is_refused(tmp_path):
     both = raw(tmp_path, 4.0, 4.0, remove_offset=True, baseline=["4 N", "4 N"])
     (fault,) = refused(both)
     assert fault.key == "thrust.remove_offset" and fault.expected == "one or the other"
-    (tmp_path / "a.csv").write_text("time_s,force_N\n0,50\n1,60\n2,0\n")
-    table = {"kind": "measured", "file": str(tmp_path / "a.csv"), "remove_offset": True}
-    (fault,) = refused(small(thrust=table))
-    assert "at least 5 points before ignition" in fault.expected

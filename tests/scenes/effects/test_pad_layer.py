@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.scenes.support import CONTACT, refused, small
+from tests.scenes.support import CONTACT, small
 from tipoff.scenes import load, parse, scene_model
 
 POLYMER = {"thickness": "5 mm", "youngs_modulus": "0.5 GPa"}
@@ -64,20 +64,6 @@ def test_no_layer_leaves_the_hash():
     layered = scene(**POLYMER)
     assert "pad_layer" not in scene().physics()["contact"]
     assert layered.replace({"contact.pad_layer": None}).hash == scene().hash != layered.hash
-
-
-def test_every_fault_of_a_layer_is_listed():
-    layer = {"thickness": "0 mm", "youngs_modulus": "5 mm", "poisson_ratio": 0.5, "colour": "red"}
-    faults = {
-        fault.key: fault.expected
-        for fault in refused(small(contact={**CONTACT, "pad_layer": layer}))
-    }
-    assert set(faults) == {f"contact.pad_layer.{key}" for key in layer}
-    missing = refused(small(contact={**CONTACT, "pad_layer": {}}))
-    assert [fault.key for fault in missing] == [
-        "contact.pad_layer.thickness",
-        "contact.pad_layer.youngs_modulus",
-    ]
 
 
 def test_an_implausibly_soft_layer_is_warned_of():

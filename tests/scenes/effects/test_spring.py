@@ -1,11 +1,11 @@
-"""Spring pushers of a scene: their numbers, their tables, and refused ones."""
+"""Spring pushers of a scene: their numbers and their tables."""
 
 import math
 
 import numpy as np
 import pytest
 
-from tests.scenes.support import refused, small, write
+from tests.scenes.support import small, write
 from tipoff.faults import SceneError
 from tipoff.formats.push_table import read_push
 from tipoff.mechanics.estimates import ends
@@ -63,30 +63,6 @@ def test_a_scene_counts_a_table_by_its_content(tmp_path):
         scene.replace({"payload.mass": 5.0})
 
 
-REFUSED = {
-    "no stroke": ({"stroke": None}, "thrust.stroke", "preload, rate and stroke, or a file"),
-    "pulls at its end": ({"stroke": "60 mm"}, "thrust.stroke", "at most 0.05 m"),
-    "held by friction": ({"friction": "100 N"}, "thrust.friction", "nothing starts"),
-    "stops on its way": ({"friction": "30 N"}, "thrust.friction", "at most 20 N"),
-    "longer than the rail": (
-        {"rate": "0 N/m", "stroke": "400 mm"},
-        "thrust.stroke",
-        "the way to the exit",
-    ),
-    "no force": ({"preload": "0 N"}, "thrust.preload", "greater than 0"),
-    "wrong unit": ({"rate": "2 N"}, "thrust.rate", "N/m"),
-    "exhaust": ({"reaction": "exhaust"}, "thrust.reaction", "platform"),
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_springs_that_cannot_work_are_refused(name):
-    changes, key, expected = REFUSED[name]
-    (fault,) = refused(spring(**changes))
-    assert fault.key == key
-    assert expected in fault.expected
-
-
 SPREADSHEETS = {
     "semicolons and decimal commas": "travel [mm];force [N]\n0;60\n40,5;45,25\n100;21\n",
     "tabs and a line of units": "travel\tforce\nmm\tN\n0\t60\n40.5\t45.25\n100\t21\n",
@@ -102,51 +78,6 @@ def test_tables_of_spreadsheets_of_any_country_are_read(tmp_path, name):
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     travel, force = read_push(str(path))
     assert travel == pytest.approx([0.0, 0.0405, 0.1]) and force.tolist() == [60.0, 45.25, 21.0]
-
-
-TABLES = {
-    "falls": ("travel [mm],force [N]\n0,9\n2,8\n1,7\n", "rises from point to point (point 3"),
-    "one travel twice": ("travel [mm],force [N]\n0,9\n2,8\n2,7\n", "rises"),
-    "begins later": ("travel [mm],force [N]\n1,9\n2,8\n", "begins at 0"),
-    "one point": ("travel [mm],force [N]\n0,9\n", "at least two points"),
-    "pulls": ("travel [mm],force [N]\n0,9\n2,-8\n", "not negative"),
-    "does not start": ("travel [mm],force [N]\n0,0\n2,8\n", "nothing starts"),
-    "no unit": ("travel,force\n0,9\n2,8\n", "the unit of the column"),
-    "other columns": ("time [s],force [N]\n0,9\n2,8\n", "once in the header"),
-    "text": ("travel [mm],force [N]\n0,a\n2,8\n", "finite number"),
-    "decimal commas": ("travel [mm],force [N]\n0,34,5\n2,8\n", "more in line 2"),
-    "nothing": ("\n", "no line"),
-    "empty": ("", "once in the header"),
-}
-
-
-@pytest.mark.parametrize("name", TABLES)
-def test_tables_that_cannot_work_are_refused(tmp_path, name):
-    text, expected = TABLES[name]
-    (fault,) = refused(from_file(write(tmp_path, "push.csv", text)))
-    assert fault.key == "thrust.file"
-    assert expected in fault.expected
-
-
-def test_all_faults_are_named_at_once(tmp_path):
-    """Of one spring, of several, and of a table."""
-    keys = {fault.key for fault in refused(spring(stroke="60 mm", friction="100 N"))}
-    assert keys == {"thrust.stroke", "thrust.friction"}
-    pair = [
-        {"preload": "0 N", "rate": "2 N/mm", "stroke": "40 mm"},
-        {"preload": "9 N", "rate": "2 N/mm"},
-    ]
-    keys = {fault.key for fault in refused(small(thrust={"kind": "springs", "springs": pair}))}
-    assert keys == {"thrust.springs.0.preload", "thrust.springs.1.stroke"}
-    path = write(tmp_path, "push.csv", "travel [mm],force [N]\n1,-9\n0,8\n")
-    (fault,) = refused(from_file(path))
-    assert all(word in fault.expected for word in ("begins at 0", "rises", "not negative"))
-
-
-def test_a_table_and_numbers_are_refused(tmp_path):
-    path = write(tmp_path, "push.csv", TABLE)
-    (fault,) = refused(spring(file=str(path)))
-    assert fault.key == "thrust.file" and "one or the other" in fault.expected
 
 
 def test_a_variation_may_not_leave_the_rail():

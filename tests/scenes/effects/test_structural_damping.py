@@ -1,5 +1,4 @@
-"""Structural damping of the rail as a scene states it: ratios at two frequencies, and which pairs
-no alpha M + beta K can meet."""
+"""Structural damping of the rail as a scene states it: ratios at two frequencies."""
 
 import math
 
@@ -7,19 +6,13 @@ import pytest
 
 from tests.scenes.support import SMALL, small
 from tipoff.mechanics.laws.structural_damping import Damping
-from tipoff.scenes import SceneError, load, parse
+from tipoff.scenes import load, parse
 
 FREQUENCIES = ["500 Hz", "5 kHz"]
 
 
 def damped(ratios, frequencies=FREQUENCIES, **tables):
     return small(rail__damping={"ratios": ratios, "frequencies": frequencies}, **tables)
-
-
-def refused(raw):
-    with pytest.raises(SceneError) as caught:
-        parse(raw)
-    return {fault.key: fault.expected for fault in caught.value.faults}
 
 
 def ratio(damping, frequency):
@@ -43,20 +36,10 @@ def test_ratio_between_and_outside():
     assert ratio(damping, 10.0 * least) > 0.01 < ratio(damping, 0.1 * least)
 
 
-@pytest.mark.parametrize(
-    "second, sound", [(0.1, True), (0.100001, False), (0.001, True), (0.000999, False)]
-)
-def test_no_mode_may_gain_energy(second, sound):
-    """On both sides of z / 10 and 10 z, where K or M alone damp."""
-    raw = damped([0.01, second])
-    if sound:
-        assert min(parse(raw).rail.damping.record()) >= 0.0
-    else:
-        expected = refused(raw)
-        assert (
-            list(expected) == ["rail.damping.ratios"]
-            and "from 0.001 to 0.1" in expected["rail.damping.ratios"]
-        )
+@pytest.mark.parametrize("second", [0.1, 0.001])
+def test_no_mode_may_gain_energy(second):
+    """At z / 10 and 10 z, where K or M alone damp. Beyond, the table is refused (``refusals.rail``)."""
+    assert min(parse(damped([0.01, second])).rail.damping.record()) >= 0.0
 
 
 def test_damping_by_one_of_the_matrices_alone():
@@ -66,36 +49,6 @@ def test_damping_by_one_of_the_matrices_alone():
     assert parse(damped([0.1, 0.01])).rail.damping.record() == pytest.approx(
         Damping(2.0 * math.pi * 100.0, 0.0), rel=1e-12
     )
-
-
-@pytest.mark.parametrize(
-    "ratios, frequencies, keys",
-    [
-        ([0.01, 0.01], ["5 kHz", "500 Hz"], {"rail.damping.frequencies"}),
-        ([0.01, 0.01], ["0 Hz", "500 Hz"], {"rail.damping.frequencies.0"}),
-        ([0.01, 0.01], ["5 rad/s", "500 Hz"], {"rail.damping.frequencies.0"}),
-        (
-            [-0.01, 1.0],
-            ["-1 Hz", "5 kg"],
-            {f"rail.damping.{key}.{i}" for key in ("ratios", "frequencies") for i in (0, 1)},
-        ),
-        ([0.0, 0.01], FREQUENCIES, {"rail.damping.ratios"}),
-        ([0.01], FREQUENCIES, {"rail.damping.ratios.1"}),
-        ([0.01, 0.5], ["500 Hz", "500 Hz"], {"rail.damping.frequencies"}),
-    ],
-)
-def test_every_fault_is_named(ratios, frequencies, keys):
-    assert set(refused(damped(ratios, frequencies))) == keys
-
-
-def test_both_keys_or_no_table():
-    assert set(refused(small(rail__damping={}))) == {
-        "rail.damping.frequencies",
-        "rail.damping.ratios",
-    }
-    assert refused(small(rail__damping={"ratios": [0.01, 0.01]})) == {
-        "rail.damping.frequencies": "this key"
-    }
 
 
 def test_dotted_keys_set_vary_and_drop_it():
