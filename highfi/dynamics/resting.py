@@ -52,7 +52,7 @@ def build(scene: Scene, system: System, stepping: Stepping) -> Rails | None:
     """Rails that can rest. None if this is unknown: on a free platform, with a rail that nothing
     holds or with a large one."""
     solids, blocks = pieces.nodes(system.mesh), system.rail.blocks
-    found = []
+    found: tuple[Deflection, ...] = ()
     if system.frame is not None:
         solved = deflections(system.mesh, scene.rail.material, scene.rail.joint(), most=MOST_NODES)
         if solved is None:
@@ -63,7 +63,7 @@ def build(scene: Scene, system: System, stepping: Stepping) -> Rails | None:
     ]
     whole = np.arange(blocks.size - 1)
     if system.rail.columns is None:
-        parts, grouped = [whole], [found]
+        parts, grouped = [whole], [list(found)]
     else:
         grouped = [[each] for each in found] or [[] for _ in parts]
     followed = [np.stack([each.size, each.frequency]) for each in found]

@@ -1,5 +1,6 @@
 """Constants and initial state of a run, from a scene and its mesh."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -17,11 +18,13 @@ from tipoff.kernels.memory import zeros
 from tipoff.mechanics import books, comoving
 from tipoff.mechanics.absent import NO_DAMPING, NO_PUSHERS
 from tipoff.mechanics.laws.hold_down import HoldDown
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 from tipoff.mechanics.laws.pushers import Pushers
 from tipoff.mechanics.laws.structural_damping import Damping
 from tipoff.mechanics.model import Faces, Model
 from tipoff.scenes import scene_model
 from tipoff.scenes.body import inverse, tensor
+from tipoff.scenes.rail_base import MaterialTable
 from tipoff.scenes.scene import Scene
 
 _MOST_SLABS = 64
@@ -55,7 +58,8 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     rails, MeshError for warm rails without mounts."""
     model = scene_model.build(scene)
     material = scene.rail.material
-    operator = assembly.of_material(mesh, material, joint=scene.rail.joint())
+    assembled = _assembled(mesh, material, scene.rail.joint())
+    operator, number = assembled.operator, assembled.number
     moving = np.where(operator.free, operator.mass, 0.0)
     frame, origin, offset = None, np.zeros(3), np.zeros(3)
     if model.platform is not None:
@@ -65,7 +69,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     # origin.
     faces = model.faces._replace(wall=model.faces.wall + offset[model.faces.axis])
     damping = scene.rail.damping.record() if scene.rail.damping else NO_DAMPING
-    rail, number = _rail(mesh.points - origin, operator, damping)
+    rail = _rail(mesh.points - origin, assembled, damping)
     masses = np.where(rail.inverse_mass > 0.0, rail.mass, 0.0)
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
     warm = _warmed(scene, model, mesh, rail, number)
@@ -130,12 +134,27 @@ def _warmed(
     return found
 
 
-def _rail(
-    points: np.ndarray, operator: assembly.Operator, damping: Damping
-) -> tuple[records.Rail, np.ndarray]:
-    """Nodal arrays in the numbering of the loop, and the number (n,) of each mesh node in it."""
-    found = extruded.find(points, operator)
-    columns, number = found if found else (None, along_x(points))
+class _Assembled(NamedTuple):
+    """The operator of a mesh, its columns if it is extruded, and the number (n,) of each mesh node in
+    the nodal arrays."""
+
+    operator: assembly.Operator
+    columns: extruded.Columns | None
+    number: np.ndarray
+
+
+@lru_cache(maxsize=4)  # the meshes of one condition and its refinements
+def _assembled(mesh: RailMesh, material: MaterialTable, joint: MountStiffness | None) -> _Assembled:
+    """What the runs on one rail share."""
+    operator = assembly.of_material(mesh, material, joint=joint)
+    found = extruded.find(mesh.points, operator)
+    columns, number = found if found else (None, along_x(mesh.points))
+    return _Assembled(operator, columns, number)
+
+
+def _rail(points: np.ndarray, assembled: _Assembled, damping: Damping) -> records.Rail:
+    """Nodal arrays in the numbering of the loop; ``points`` (n,3) m from the frame's origin."""
+    operator, columns, number = assembled
     size = -(-(number.max() + 1) // extruded.LANES) * extruded.LANES
     place, mass, inverse = zeros((size, 3), order="F"), zeros((size,)), zeros((size,))
     place[number], mass[number] = points, operator.mass
@@ -149,7 +168,7 @@ def _rail(
     else:
         blocks = columns.chunks * columns.stride
     clamped = np.sort(number[~operator.free])
-    rail = records.Rail(
+    return records.Rail(
         points=place,
         mass=mass,
         inverse_mass=inverse,
@@ -161,7 +180,6 @@ def _rail(
         damping=damping,
         mounts=mounts.build(operator.joints, number, blocks),
     )
-    return rail, number
 
 
 def along_x(points: np.ndarray) -> np.ndarray:

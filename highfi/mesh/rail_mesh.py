@@ -51,9 +51,10 @@ class MeshError(InputError):
     """The mesh cannot be used; the message lists every fault found."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RailMesh:
-    """Elements of one kind and named boundary surfaces."""
+    """Elements of one kind and named boundary surfaces. A mesh equals itself alone, so that what
+    follows from it can be kept with it."""
 
     points: np.ndarray  # (n,3) m
     cells: np.ndarray  # (e,k) point numbers, k = 8 or 10, VTK order, positive Jacobian

@@ -11,6 +11,8 @@ of the stiffness is about (W / w)^2, and larger if the clamp is far from the axi
 refused if this ratio exceeds ``MOST``.
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 from tipoff.faults import Fault, SceneError
@@ -91,6 +93,7 @@ def lowest_frequency(scene: Scene, mesh: RailMesh) -> float:
     return _FREQUENCIES[key]
 
 
+@lru_cache(maxsize=4)  # runs on one rail share it
 def lowest_of(
     mesh: RailMesh, material: MaterialTable, joint: MountStiffness | None = None
 ) -> float:

@@ -11,6 +11,7 @@ sufficient. The mirror image of a rail, with the signs S, has u'(SX) = S u(X) wi
 G' = S G S.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -45,9 +46,10 @@ class Deflection(NamedTuple):
         return np.concatenate([self.signs, np.outer(self.signs, self.signs).ravel()])
 
 
+@lru_cache(maxsize=4)  # runs on one rail share them
 def deflections(
     mesh: RailMesh, material: MaterialTable, joint: MountStiffness | None, most: int
-) -> list[Deflection] | None:
+) -> tuple[Deflection, ...] | None:
     """Static deflection of each solid of ``mesh`` on rigid mounts or on a ``joint``; None if a
     solid has no mount or more than ``most`` nodes."""
     found: list[tuple[RailMesh, Deflection]] = []
@@ -60,7 +62,7 @@ def deflections(
                 break
         else:
             found.append((solid, _solve(solid, own, material, joint)))
-    return [deflection for _, deflection in found]
+    return tuple(deflection for _, deflection in found)
 
 
 def _solve(

@@ -168,6 +168,32 @@ def test_every_condition_of_the_reference_has_an_uncertainty_of_its_own(monkeypa
         assert list(context.uncertainty("h4")[1]) == ["mesh", "step", "cells"]
 
 
+def test_step_and_cells_are_refined_where_the_mesh_alone_is_converged(monkeypatch):
+    """Rates that change by 0.5 deg/s with the mesh, and by nothing else: no single run can judge the
+    condition. Control: another one, whose mesh changes nothing, has all three causes."""
+    scene = load("reference").replace({"agreement.refined": ["phi35", "h7"]})
+    study = Study(scene, Path("nowhere"), Settings(), ("phi35", "h7"))
+    sizes = set()
+
+    def rates(run):
+        sizes.add(run.numerics.element_size)
+        coarse = run.numerics.element_size == study.settings.coarse_size
+        moved = np.radians(0.5) if run.label.startswith("h7") and coarse else 0.0
+        return flight(lambda t: np.outer(np.full(t.size, moved), [0.0, 1.0, 0.0]))
+
+    monkeypatch.setattr(type(study.store), "fill", lambda store, title, runs: map(rates, runs))
+    found = refinement.refinements(study)
+    assert len(sizes) > 1
+    assert [(item.condition, item.cause) for item in found] == [
+        ("phi35", "mesh"),
+        ("h7", "mesh"),
+        ("phi35", "step"),
+        ("phi35", "cells"),
+    ]
+    context = Context([], found, GATES)
+    assert context.converged("phi35") and not context.converged("h7")
+
+
 @pytest.fixture(scope="module")
 def coarse_walls():
     return highfi.condense(load("reference"), 4e-3)

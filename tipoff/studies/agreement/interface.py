@@ -68,14 +68,15 @@ def _stiffened(study: Study, factor: float) -> dict[str, float]:
 
 
 def rows(study: Study, request: Callable[..., Run], context: Context) -> list[AtStiffness]:
-    """Verdicts on the scene's refined conditions; none without contact. ``request`` makes runs of
-    the surrogate on the compliance of the coarse mesh from condition, overrides and tag."""
+    """Verdicts on the scene's refined conditions with a converged reference; none without contact.
+    ``request`` makes runs of the surrogate on the compliance of the coarse mesh from condition,
+    overrides and tag."""
     if study.scene.contact is None:
         return []
     places = [
         (name, factor)
         for name in study.conditions
-        if name in study.scene.agreement.refined
+        if name in study.scene.agreement.refined and context.converged(name)
         for factor in FACTORS
     ]
     wanted = [

@@ -18,7 +18,7 @@ from tipoff.comparison.metrics import compare
 from tipoff.highfi.numerics import LEAST_CELLS, Numerics
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
-from tipoff.studies.agreement.verdicts import Refinement
+from tipoff.studies.agreement.verdicts import CONVERGED_DEG_S, Refinement
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study
@@ -113,18 +113,27 @@ def groups(study: Study, name: str) -> dict[str, Group]:
 
 def refinements(study: Study, names: Iterable[str] | None = None) -> list[Refinement]:
     """Uncertainties of the reference on the conditions ``names`` (default: all). The uncertainty by
-    the mesh also reveals chaotic conditions."""
-    wanted = [
-        (name, cause, group)
-        for name in (study.conditions if names is None else names)
-        for cause, group in groups(study, name).items()
+    the mesh also reveals chaotic conditions. Where it alone is too large, step and cells are not
+    refined: no single run judges such a condition."""
+    wanted = {name: groups(study, name) for name in (names or study.conditions)}
+    by_mesh = _measured(study, [(name, MESH, found[MESH]) for name, found in wanted.items()])
+    open_ones = [
+        (item.condition, cause, group)
+        for item in by_mesh
+        if item.uncertainty_deg_s is not None and item.uncertainty_deg_s <= CONVERGED_DEG_S
+        for cause, group in wanted[item.condition].items()
+        if cause != MESH
     ]
+    return by_mesh + _measured(study, open_ones)
+
+
+def _measured(study: Study, wanted: Sequence[tuple[str, str, Group]]) -> list[Refinement]:
+    """Uncertainties of conditions by a cause each."""
     runs = iter(study.store.fill("refinement", [run for *_, group in wanted for run in group.runs]))
-    found = []
-    for name, cause, group in wanted:
-        made = [next(runs) for _ in group.runs]
-        found.append(refinement(name, cause, group.sizes, made, group.used))
-    return found
+    return [
+        refinement(name, cause, group.sizes, [next(runs) for _ in group.runs], group.used)
+        for name, cause, group in wanted
+    ]
 
 
 def refinement(
