@@ -37,8 +37,9 @@ def under_patches(
     loaded, numbers = np.unique(np.stack([grouped.normal, grouped.along]), return_inverse=True)
     normal, along = numbers.reshape(2, *grouped.normal.shape)[:, number]
     load, first = grouped.load[number], grouped.load[number, : inverses[1].shape[-1]]
-    every = spanned(inverses[0] @ load, grouped.lines)
-    least = spanned(inverses[1] @ first, grouped.lines)
+    with one_thread():  # another number of threads would change the last bits
+        every = spanned(inverses[0] @ load, grouped.lines)
+        least = spanned(inverses[1] @ first, grouped.lines)
     starts, layers = _layers(clamped.chain, loaded, normal, grouped.lines)
     with one_thread():
         blocks = clamped.chain.blocks(loaded, layers, reported())
