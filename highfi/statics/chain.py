@@ -24,7 +24,7 @@ from collections.abc import Callable, Iterator
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg.lapack import dpotrf, dpotri, dtrtrs
+from scipy.linalg.lapack import dpotrf, dpotri
 from scipy.sparse import csc_array, csr_array
 
 from tipoff.highfi.statics.local_loads import LocalLoads
@@ -64,7 +64,7 @@ def _levels(matrix: csr_array, start: np.ndarray) -> list[np.ndarray]:
 
 
 def seconds(count: float, width: float) -> float:
-    """About the time (s) of ``Layered.products`` with ``count`` layers of ``width`` degrees of
+    """About the time (s) of ``slabs.Slabs.products`` with ``count`` layers of ``width`` degrees of
     freedom."""
     return count * (_CUBE_OF_PRODUCTS * width**3 + _LAYER)
 
@@ -77,52 +77,14 @@ def is_cheaper(order: list[np.ndarray], loads: int) -> bool:
     return 16.0 * (width**2).sum() < _MOST_BYTES and chain < _SQUARE * loads * (width**2).sum()
 
 
-class Layered:
-    """A ``stiffness`` (d,d) by its layers ``order``."""
+class Chain:
+    """Factor of a symmetric positive definite ``stiffness`` (d,d) by its layers ``order``."""
 
-    def __init__(self, stiffness: csc_array | csr_array, order: list[np.ndarray]):
+    def __init__(self, stiffness: csc_array, order: list[np.ndarray]):
         self._order = np.concatenate(order)
         ends = np.cumsum([0, *(layer.size for layer in order)])
         self._parts = [slice(first, last) for first, last in pairwise(ends)]
         self._matrix = csr_array(stiffness)[self._order][:, self._order]
-
-    def _block(self, row: int, column: int) -> np.ndarray:
-        part = self._parts[row]
-        first, last = self._matrix.indptr[part.start], self._matrix.indptr[part.stop]
-        own, columns = self._matrix.indptr[part.start : part.stop + 1] - first, self._parts[column]
-        place = self._matrix.indices[first:last] - columns.start
-        inside = (place >= 0) & (place < columns.stop - columns.start)
-        found = np.zeros((part.stop - part.start, columns.stop - columns.start))
-        rows = np.repeat(np.arange(len(found)), np.diff(own))
-        found[rows[inside], place[inside]] = self._matrix.data[first:last][inside]
-        return found
-
-    def products(self, loads: np.ndarray, report: Callable[[float], None]) -> np.ndarray:
-        """Products F' K^-1 F (l,l) of ``loads`` F (d,l) N: the displacement of each under each, in J.
-        Layers that are done are not kept, so a solid of any length fits into memory. ``report`` gets
-        the fraction that is done."""
-        placed = loads[self._order]
-        found = np.zeros((loads.shape[1], loads.shape[1]))
-        coupled, z = np.zeros((0, 0)), np.zeros((0, 0))
-        for layer, part in enumerate(self._parts):
-            block, own = self._block(layer, layer), placed[part]
-            if layer:
-                block -= coupled.T @ coupled
-                own = own - coupled.T @ z
-            lower = dpotrf(block, lower=True)[0]
-            z = dtrtrs(lower, own, lower=True)[0]
-            found += z.T @ z
-            if layer + 1 < len(self._parts):
-                coupled = dtrtrs(lower, self._block(layer, layer + 1), lower=True)[0]
-            report((layer + 1) / len(self._parts))
-        return found
-
-
-class Chain(Layered):
-    """Factor of a symmetric positive definite ``stiffness`` (d,d) by its layers ``order``."""
-
-    def __init__(self, stiffness: csc_array, order: list[np.ndarray]):
-        super().__init__(stiffness, order)
         self._inverse: list[np.ndarray] = []  # S_k^-1
         self._across: list[np.ndarray] = []  # S_k^-1 B_k
         coupling = condensed = np.zeros((0, 0))
@@ -135,6 +97,17 @@ class Chain(Layered):
                 coupling = self._block(layer, layer + 1)
                 condensed = self._inverse[-1] @ coupling
                 self._across.append(condensed)
+
+    def _block(self, row: int, column: int) -> np.ndarray:
+        part = self._parts[row]
+        first, last = self._matrix.indptr[part.start], self._matrix.indptr[part.stop]
+        own, columns = self._matrix.indptr[part.start : part.stop + 1] - first, self._parts[column]
+        place = self._matrix.indices[first:last] - columns.start
+        inside = (place >= 0) & (place < columns.stop - columns.start)
+        found = np.zeros((part.stop - part.start, columns.stop - columns.start))
+        rows = np.repeat(np.arange(len(found)), np.diff(own))
+        found[rows[inside], place[inside]] = self._matrix.data[first:last][inside]
+        return found
 
     def solve(self, loads: np.ndarray) -> np.ndarray:
         """Displacement (m) under ``loads`` (N), (d,) or (d,c)."""

@@ -42,17 +42,6 @@ def stiffness(request):
     return request.param()
 
 
-def test_products_of_loads_need_no_kept_layer(stiffness):
-    """As of a dense solution, for loads over all layers."""
-    loads, seen = np.random.default_rng(1).standard_normal((stiffness.shape[0], 4)), []
-    found = chain.Layered(stiffness, chain.layers(csr_array(stiffness))).products(
-        loads, seen.append
-    )
-    expected = loads.T @ np.linalg.solve(stiffness.toarray(), loads)
-    assert seen == sorted(seen) and seen[-1] == 1.0
-    assert found == pytest.approx(expected, rel=SAME, abs=SAME * np.abs(expected).max())
-
-
 def test_only_neighbouring_layers_are_coupled(stiffness):
     order = chain.layers(csr_array(stiffness))
     layer = np.empty(stiffness.shape[0], dtype=np.int64)
