@@ -28,7 +28,11 @@ CALIBRATION = tipoff.Calibration(
     {"contact.stiffness": 2.2e9}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0
 )
 FOUND = SimpleNamespace(
-    flexibility=1.0, degree=2, accuracy=lambda: "", finding=lambda joints: FOUND
+    flexibility=1.0,
+    degree=2,
+    accuracy=lambda: "",
+    stated=lambda: None,
+    finding=lambda joints: FOUND,
 )
 
 
@@ -37,7 +41,7 @@ def solvers(monkeypatch, tmp_path):
     """What the solvers were asked for, in place of their runs."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))  # nothing is compiled
     asked = []
-    unsettled = SimpleNamespace(outcome=SimpleNamespace(rate=None))
+    unsettled = SimpleNamespace(outcome=SimpleNamespace(rate=None), numerics={})
     monkeypatch.setattr(highfi, "run", lambda *given: asked.append(("highfi", *given)))
     monkeypatch.setattr(
         lowfi, "run", lambda *given, **more: asked.append((*given, more)) or unsettled

@@ -170,6 +170,8 @@ def run(
             numerics=request.numerics,
             progress=progress,
         )
+        if request.compliance is not None:
+            found.numerics["rail_compliance"] = request.compliance.stated()
         if not sensitivity:
             return found
         limit = math.degrees(scene.agreement.settled_limit)

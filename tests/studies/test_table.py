@@ -18,7 +18,7 @@ from tipoff.studies.render.table import (
     span,
     terminal,
 )
-from tipoff.studies.render.uncertain import Measured
+from tipoff.uncertain import Measured
 
 TABLE = Table(
     ["condition", Column("rate", "deg/s", "+.2f"), Column("drift", "J", scale=100.0), "steps"],

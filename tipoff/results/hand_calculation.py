@@ -17,16 +17,19 @@ without play, and the slot holds the roll. This is the rate at exit.
 """
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.mechanics.absent import offset as thrust_offset
 from tipoff.mechanics.estimates import ends
+from tipoff.mechanics.instant import EXIT, SETTLED
 from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.mechanics.outcome import relative_motion
 from tipoff.results import guides
+from tipoff.results.guides import Vector
 from tipoff.scenes import launch, scene_model
 from tipoff.scenes.scene import Scene
 
@@ -37,17 +40,28 @@ if TYPE_CHECKING:
 _GROWTH = 0.1  # of the moment of the springs
 
 
-class ByHand(NamedTuple):
-    """Result of the calculation."""
+@dataclass(frozen=True)
+class ByHand:
+    """Rates of a payload by a hand calculation.
 
-    rate: np.ndarray  # (3,) rad/s, in body axes
-    pad: int | None  # index of the pad that touches
+    Example:
+        >>> free = tipoff.load("tiny").replace({"contact": None, "friction": None})
+        >>> tipoff.run(free).by_hand[0].words
+        'moment impulse over inertia, no pad touches'
+    """
 
-    @property
-    def words(self) -> str:
-        """Names the pads that are included."""
-        touched = "no pad touches" if self.pad is None else f"pad {self.pad + 1} alone touches"
-        return f"moment impulse over inertia, {touched}"
+    #: rad/s, in body axes.
+    rate_rad_s: Vector
+    #: The instant: "settled" or "exit".
+    at: str
+    #: What is included, and what is assumed.
+    words: str
+
+
+def of_run(scene: Scene, run: "Trajectory") -> tuple[ByHand, ...]:
+    """The hand calculations that are valid for a ``run`` of ``scene``: settled, and at exit."""
+    both = (_rates(scene, run), pinned(scene, run))
+    return tuple(found for found in both if isinstance(found, ByHand))
 
 
 def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
@@ -85,21 +99,15 @@ def _rates(scene: Scene, run: "Trajectory") -> ByHand | str:
         force = np.einsum("nji,nj->ni", rotation.matrices(run.quaternion), run.pad_force[:, face])
         moment += np.cross(model.faces.centre[face], np.trapezoid(force, run.time, axis=0))
     begun = np.array(model.initial.rate)
-    return ByHand(begun + model.payload.inverse_inertia @ moment, pads[0] if pads else None)
+    touched = f"pad {pads[0] + 1} alone touches" if pads else "no pad touches"
+    return ByHand(
+        _vector(begun + model.payload.inverse_inertia @ moment),
+        SETTLED,
+        f"moment impulse over inertia, {touched}",
+    )
 
 
-class Pinned(NamedTuple):
-    """Rates of a rocket at exit, by hand."""
-
-    rate: np.ndarray  # (3,) rad/s, in body axes
-
-    @property
-    def words(self) -> str:
-        """The assumptions."""
-        return "a rigid rocket turns about its rear button after the front one left, without play and roll"
-
-
-def pinned(scene: Scene, run: "Trajectory") -> Pinned | str:
+def pinned(scene: Scene, run: "Trajectory") -> ByHand | str:
     """Rates at exit of a rocket on two buttons that turns about the rear one; or why it has none."""
     buttons = [guide for guide in guides.of_run(scene, run) if guide.name.startswith("button")]
     if len(buttons) != 2 or scene.platform is not None:
@@ -124,7 +132,15 @@ def pinned(scene: Scene, run: "Trajectory") -> Pinned | str:
         force += mass * (rear.leaves_s - front.leaves_s) * np.array(model.body_force)
     about_pin = np.diag(body) + mass * distance**2
     turning = np.array([0.0, moment[1] - distance * force[2], moment[2] + distance * force[1]])
-    return Pinned(turning / about_pin)
+    words = (
+        "a rigid rocket turns about its rear button after the front one left, without play and roll"
+    )
+    return ByHand(_vector(turning / about_pin), EXIT, words)
+
+
+def _vector(values: np.ndarray) -> Vector:
+    x, y, z = values.tolist()
+    return x, y, z
 
 
 def _turned(run: "Trajectory", stroke: float) -> float:

@@ -1,19 +1,17 @@
 """A trajectory as text: one line, and the values of its summary and of its card."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from tipoff.cards import fixed
 from tipoff.faults import SceneError
 from tipoff.mechanics import instant
+from tipoff.mechanics.model_names import SPRINGS
 from tipoff.mechanics.outcome import Outcome
-from tipoff.results import hand_calculation, unfinished
-from tipoff.results.model_error import Range
+from tipoff.results import answer, guides, hand_calculation, unfinished
 from tipoff.scenes.scene import parse
-from tipoff.units import duration
+from tipoff.units import duration, is_number
 
 if TYPE_CHECKING:
     from tipoff.results.trajectory import Trajectory
@@ -46,43 +44,28 @@ def facts(run: "Trajectory") -> dict[str, str]:
         text["exit"] = f"{duration(found.exit_time, 4)} after ignition"
         if found.impulse_after_exit is not None:
             text["exit"] += f", {100.0 * found.impulse_after_exit:.3g} % of the impulse after it"
-    if at == instant.SETTLED:
+    if at == instant.SETTLED and not _is_one_of_many(run):
         text |= _beyond("at exit", found, instant.EXIT)
     velocity, rate = instant.velocity(found, at), instant.rate(found, at)
     if rate is not None and velocity is not None:
-        own = run.error.range if run.error is not None else None
-        if own is not None:
-            text |= _spans(own, _where(at))
-        else:
-            text |= {
-                "velocity": f"{_vector(velocity)} m/s (x, y, z){_where(at)}",
-                "rate": f"{_rates(rate)} deg/s (x, y, z)",
-                "direction": _direction(velocity),
-            }
+        own = answer.words(velocity, list(map(math.degrees, rate)), run.error)
+        text |= own | {"velocity": f"{own['velocity']}{_where(at)}"}
         if run.error is not None:
             text["error"] = run.error.words
-    if at == instant.EXIT:
+    if at == instant.EXIT and not _is_one_of_many(run):
         text |= _beyond("burnt out", found, instant.SETTLED)
     return (
-        text | _beside(run) | _checks(run.checks) | {"took": f"{run.cost.get('wall_s', 0.0):.3g} s"}
+        text
+        | _beside(run)
+        | _used(run)
+        | _checks(run.checks)
+        | {"took": f"{run.cost.get('wall_s', 0.0):.3g} s"}
     )
 
 
-def _spans(found: Range, where: str) -> dict[str, str]:
-    """Velocity, rate and direction of a sensitive run."""
-
-    def of(low: Sequence[float], high: Sequence[float], digits: int) -> str:
-        return ", ".join(
-            f"{fixed(one, digits)} to {fixed(other, digits)}" for one, other in zip(low, high)
-        )
-
-    millimetres = [1e3 * end for end in found.across_m_s]
-    off, across = (f"{low:.3g} to {high:.3g}" for low, high in (found.off_axis_deg, millimetres))
-    return {
-        "velocity": f"{of(found.low_m_s, found.high_m_s, 4)} m/s (x, y, z){where}",
-        "rate": f"{of(found.low_deg_s, found.high_deg_s, 3)} deg/s (x, y, z)",
-        "direction": f"{off} deg off axis, {across} mm/s across",
-    }
+def _is_one_of_many(run: "Trajectory") -> bool:
+    """Whether the answer is the range over neighbours of the run."""
+    return run.error is not None and run.error.range is not None
 
 
 def _beyond(title: str, found: Outcome, at: str) -> dict[str, str]:
@@ -99,29 +82,42 @@ def _where(at: str) -> str:
     return f", {instant.where(at)}" if at == instant.EXIT else ""
 
 
-def _direction(velocity: list[float]) -> str:
-    moved = np.array([velocity])
-    off, across = instant.off(moved)[0], instant.lateral(moved)[0]
-    return f"{math.degrees(off):.3g} deg off axis, {1e3 * across:.3g} mm/s across"
-
-
-def _vector(values: list[float]) -> str:
-    return ", ".join(fixed(value, 4) for value in values)
-
-
 def _beside(run: "Trajectory") -> dict[str, str]:
-    """The rates by hand, and advice for a run that ended too early. Both need the scene; a
+    """The rates by hand, each button, and advice for a run that ended too early. Both need the scene; a
     trajectory that was read back may lack its files."""
     try:
         scene = parse(run.scene, bare_numbers_are_si=True)
     except SceneError:
         return {}
-    found = {}
-    if (hand := hand_calculation.rates(scene, run)) is not None:
-        found["by hand"] = f"{_rates(hand.rate.tolist())} deg/s: {hand.words}"
+    at, found = instant.of_outcome(run.outcome), {}
+    for hand in hand_calculation.of_run(scene, run):
+        if hand.at == at:
+            rates = answer.rates(list(map(math.degrees, hand.rate_rad_s)))
+            found["by hand"] = f"{rates}: {hand.words}"
+    for guide in guides.of_run(scene, run):
+        if guide.name.startswith("button"):
+            found[guide.name] = answer.of_guide(guide, not _is_one_of_many(run))
     if words := unfinished.advice(scene, run):
         found["advice"] = words
     return found
+
+
+def _used(run: "Trajectory") -> dict[str, str]:
+    """The numbers by which the run was made."""
+    found = run.numerics
+    rail = found.get("rail_compliance") or found
+    forms = {
+        "modes": "{} modes of each rail",
+        "degree": "patterns of degree {}",
+        "cells": "{} contact cells along each edge of a pad",
+        "relative_tolerance": "tolerance {:g}",
+    }
+    if run.model == SPRINGS or not run.scene.get("contact"):  # nothing has cells
+        forms = {"relative_tolerance": forms["relative_tolerance"]}
+    size = next((rail[key] for key in ("element_size_m", "element_size") if rail.get(key)), None)
+    words = [f"rail of {1e3 * size:.3g} mm elements"] if size else []
+    words += [form.format(found[key]) for key, form in forms.items() if is_number(found.get(key))]
+    return {"numerics": ", ".join(words)} if words else {}
 
 
 def _checks(checks: Mapping[str, float]) -> dict[str, str]:

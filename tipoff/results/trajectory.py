@@ -27,7 +27,7 @@ from tipoff.files import (
 )
 from tipoff.mechanics import ledger, outcome
 from tipoff.mechanics.model_names import MODELS
-from tipoff.results import finite, guides, hand_over, shown
+from tipoff.results import finite, guides, hand_calculation, hand_over, shown
 from tipoff.results.completion import Completed
 from tipoff.results.contents import (
     DIMENSIONS,
@@ -241,6 +241,23 @@ class Trajectory(Carded, Completed):
         from tipoff.scenes.scene import parse
 
         return guides.of_run(parse(self.scene, bare_numbers_are_si=True), self)
+
+    @property
+    def by_hand(self) -> tuple[hand_calculation.ByHand, ...]:
+        """The rates by a hand calculation, for comparison, where one is valid: settled by moment impulse over
+        inertia, if at most one pad touches; at exit of a rocket on two buttons that turns about the rear one.
+
+        Raises:
+            SceneError: a trajectory that was read back, if its scene needs files that are gone.
+
+        Example:
+            >>> run = tipoff.run(tipoff.load("tiny"), "springs")
+            >>> run.by_hand  # more than one pad touches
+            ()
+        """
+        from tipoff.scenes.scene import parse
+
+        return hand_calculation.of_run(parse(self.scene, bare_numbers_are_si=True), self)
 
     def state_at_exit(self) -> hand_over.State:
         """State of the payload 0.1 ms after the exit, in the middle of the window at exit.

@@ -23,7 +23,7 @@ from tipoff.files import write_json
 from tipoff.highfi.dynamics import substeps
 from tipoff.scenes.scene import load
 from tipoff.studies.render.table import Cells, Column, Table
-from tipoff.studies.render.uncertain import Measured, rounded
+from tipoff.uncertain import Measured, rounded
 from tipoff.workspace import machine
 from tipoff.workspace.progress import say
 from validation.bench import done

@@ -29,7 +29,7 @@ from tipoff.studies.cost.results import Cost
 from tipoff.studies.render import chart
 from tipoff.studies.render.document import Part, markdown
 from tipoff.studies.render.table import Column, Table, number, percent
-from tipoff.studies.render.uncertain import STEPS
+from tipoff.uncertain import STEPS
 from tipoff.workspace.study import read
 from tipoff.workspace.timing import Speedup
 from validation.documents import further, state

@@ -11,7 +11,7 @@ from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, estimate, percent, span
-from tipoff.studies.render.uncertain import LEAST, number, uncertain
+from tipoff.uncertain import LEAST, number, uncertain
 from validation.montecarlo.results import (
     Compared,
     Converging,

@@ -9,7 +9,7 @@ from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Cells, Column, Table
-from tipoff.studies.render.uncertain import number
+from tipoff.uncertain import number
 from validation.peers import stage
 from validation.peers.case import OURS
 

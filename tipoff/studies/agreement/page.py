@@ -14,7 +14,7 @@ from tipoff.studies.agreement.verdicts import JudgedCondition
 from tipoff.studies.render.column import of_record
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Column, Table, percent
-from tipoff.studies.render.uncertain import LEAST, Measured, number, rounded
+from tipoff.uncertain import LEAST, Measured, number, rounded
 
 
 def starred(shown: str, measured_here: bool) -> str:

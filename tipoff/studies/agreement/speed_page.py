@@ -7,7 +7,7 @@ from tipoff.studies.agreement import stage
 from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
 from tipoff.studies.render.document import Caption, Part
 from tipoff.studies.render.table import Column, Table, span
-from tipoff.studies.render.uncertain import LEAST, Measured, rounded
+from tipoff.uncertain import LEAST, Measured, rounded
 from tipoff.workspace.timing import Speedup
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import Any
 from tipoff.studies.calibration.stage import Fit
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Column, Table, span
-from tipoff.studies.render.uncertain import LEAST, Measured, rounded
+from tipoff.uncertain import LEAST, Measured, rounded
 
 _INTERVALS = (
     "The intervals are linear and treat the residuals as scatter about a correct model. They do not "

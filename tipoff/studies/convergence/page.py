@@ -13,7 +13,7 @@ from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AXIS_COLOURS, GREY
 from tipoff.studies.render.table import Column, Table
-from tipoff.studies.render.uncertain import LEAST, Measured, number
+from tipoff.uncertain import LEAST, Measured, number
 
 _RATES = (
     "Condition {condition}. Settled rates over element size; dotted: uncertainty of the finest "

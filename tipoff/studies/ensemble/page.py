@@ -12,7 +12,7 @@ from tipoff.studies.ensemble.summary import Above
 from tipoff.studies.populations.paired import Bounded
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Column, Table, bounded, estimate, percent
-from tipoff.studies.render.uncertain import LEAST, number
+from tipoff.uncertain import LEAST, number
 from tipoff.workspace.words import counted
 
 _LABELS = {

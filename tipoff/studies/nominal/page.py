@@ -10,7 +10,7 @@ from tipoff.scenes import halving
 from tipoff.studies.nominal.spread import QUANTITIES, Range, Spread
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
 from tipoff.studies.render.document import Caption, KeyFigures, Part
-from tipoff.studies.render.uncertain import LEAST, SHARE, STEPS, number, range_of, rounded
+from tipoff.uncertain import LEAST, SHARE, STEPS, number, range_of, rounded
 from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from tipoff.studies.render.uncertain import LEAST, NOTHING, STEPS, Measured, number, rounded
-from tipoff.studies.render.uncertain import uncertain as with_uncertainty
+from tipoff.uncertain import LEAST, NOTHING, STEPS, Measured, number, rounded
+from tipoff.uncertain import uncertain as with_uncertainty
 
 
 @dataclass(frozen=True)

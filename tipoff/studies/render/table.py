@@ -15,7 +15,7 @@ from markupsafe import Markup, escape
 
 from tipoff.studies.render.column import Column as Column
 from tipoff.studies.render.column import of_record
-from tipoff.studies.render.uncertain import LEAST, NOTHING, STEPS, Measured, number, rounded
+from tipoff.uncertain import LEAST, NOTHING, STEPS, Measured, number, rounded
 
 
 @dataclass(frozen=True)

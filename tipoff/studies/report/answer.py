@@ -24,7 +24,9 @@ from tipoff.studies.nominal import stage as nominal_stage
 from tipoff.studies.populations.exceedance import TOTAL, Limit
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
 from tipoff.studies.render.table import Column, Table
-from tipoff.studies.render.uncertain import (
+from tipoff.studies.report import trust
+from tipoff.studies.runs.results import ConditionRun, Settled, roll, transverse
+from tipoff.uncertain import (
     LEAST,
     STEPS,
     Measured,
@@ -33,8 +35,6 @@ from tipoff.studies.render.uncertain import (
     rounded,
     uncertain,
 )
-from tipoff.studies.report import trust
-from tipoff.studies.runs.results import ConditionRun, Settled, roll, transverse
 from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:

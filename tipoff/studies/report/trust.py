@@ -4,8 +4,8 @@ from tipoff.scenes import provenance
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.stage import Agreement
-from tipoff.studies.render.uncertain import LEAST, number
 from tipoff.studies.report import inputs
+from tipoff.uncertain import LEAST, number
 
 
 def lines(

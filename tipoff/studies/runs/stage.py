@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from tipoff.mechanics import instant
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.mechanics.outcome import Outcome, no_exit_values
 from tipoff.results import guides, hand_calculation, unfinished
@@ -137,16 +138,16 @@ def _vector(found: Iterable[float]) -> Vector:
 
 
 def _beside(request: Run, found: Trajectory) -> dict[str, Any]:
-    hand = hand_calculation.rates(request.scene, found)
-    pinned = hand_calculation.pinned(request.scene, found)
+    by_hand = {
+        each.at: ByHand(_vector(map(math.degrees, each.rate_rad_s)), each.words)
+        for each in hand_calculation.of_run(request.scene, found)
+    }
     return {
         "advice": unfinished.advice(request.scene, found),
         "thrust": request.scene.thrust.describe(request.scene.time_limit),
         "rail_compliance": request.compliance and request.compliance.stated(),
         "no_by_hand": hand_calculation.why_not(request.scene, found),
-        "by_hand_at_exit": None
-        if isinstance(pinned, str)
-        else ByHand(_vector(map(math.degrees, pinned.rate)), pinned.words),
+        "by_hand": by_hand.get(instant.SETTLED),
+        "by_hand_at_exit": by_hand.get(instant.EXIT),
         "guides": guides.of_run(request.scene, found),
-        "by_hand": hand and ByHand(_vector(map(math.degrees, hand.rate)), hand.words),
     }

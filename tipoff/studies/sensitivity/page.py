@@ -13,10 +13,10 @@ from tipoff.studies.render.chart import Chart, Line, Panel, Picture
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table
-from tipoff.studies.render.uncertain import Measured, number, uncertain
 from tipoff.studies.sensitivity.contact_table import Axes, PerturbedRun
 from tipoff.studies.sensitivity.indices import Indices
 from tipoff.studies.sensitivity.results import Constants, Sensitivity, Shares, Sobol
+from tipoff.uncertain import Measured, number, uncertain
 from tipoff.workspace.words import counted
 
 _Indexed = list[tuple[Shares, Indices]]

@@ -7,13 +7,13 @@ from enum import IntEnum
 
 from tipoff.mechanics import instant
 from tipoff.mechanics.estimates import stop
-from tipoff.results.guides import Guide
-from tipoff.results.model_error import ModelError, Range
+from tipoff.results import answer
+from tipoff.results.model_error import ModelError
 from tipoff.scenes import launch
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.render.uncertain import number, range_of, rounded, uncertain
-from tipoff.studies.runs.results import AtExit, ByHand, ConditionRun, Settled
+from tipoff.studies.runs.results import ByHand, ConditionRun
+from tipoff.uncertain import number, uncertain
 from tipoff.units import duration
 from tipoff.workspace import disturbed, model_error
 from tipoff.workspace.disturbed import Disturbed
@@ -126,73 +126,35 @@ def _answer(row: Single, every: bool) -> list[str]:
     where = f", {instant.where(row.at)}" if at_exit else ""
     text = [] if (at_exit or not every) and row.taken else _at_exit(row)
     if (found := row.taken) is not None:
-        own = row.error.range if row.error is not None else None
-        velocity = _vector(found.velocity_m_s) if own is None else _spans(own)
+        own = answer.words(found.velocity_m_s, found.rate_deg_s, row.error)
         text += [
-            f"  velocity      {velocity} m/s (x, y, z){where}",
-            *_rates(row, found.rate_deg_s, where),
-            *([] if not every else _by_hand_at_exit(row)),
-            *([] if at_exit or not every else _by_hand(row)),
-            f"  direction     {_direction(found) if own is None else _directions(own)}",
+            f"  velocity      {own['velocity']}{where}",
+            f"  rate          {own['rate']}{where}",
+            f"  error         {_error(row.error)}",
+            *(_by_hand_at_exit(row) if at_exit or every else []),
+            *([] if at_exit else _by_hand(row, every)),
+            f"  direction     {own['direction']}",
         ]
     if at_exit and every and row.settled is not None:
-        rates = ", ".join(map(uncertain, row.settled.rate_deg_s))
         text += [
-            f"  burnt out     {rates} deg/s (x, y, z), {_vector(row.settled.velocity_m_s)} m/s, "
-            f"{instant.IN_A_VACUUM}",
-            *_by_hand(row),
+            f"  burnt out     {answer.rates(row.settled.rate_deg_s)} (x, y, z), "
+            f"{_vector(row.settled.velocity_m_s)} m/s, {instant.IN_A_VACUUM}",
+            *_by_hand(row, every),
         ]
     return text
 
 
-def _direction(found: Settled | AtExit) -> str:
-    off, across = found.direction_error_deg, 1e3 * found.lateral_velocity_m_s
-    return f"{off:.4g} deg off axis, {across:.4g} mm/s across"
-
-
-def _spans(found: Range) -> str:
-    """The velocity of a sensitive run."""
-    ends = zip(found.low_m_s, found.high_m_s)
-    return ", ".join(range_of(low, high, least=1e-4) for low, high in ends)
-
-
-def _directions(found: Range) -> str:
-    """The direction of a sensitive run."""
-    across = range_of(*(1e3 * end for end in found.across_m_s))
-    return f"{range_of(*found.off_axis_deg, least=1e-4)} deg off axis, {across} mm/s across"
-
-
-def _rates(row: Single, rate: Sequence[float], where: str) -> list[str]:
-    """The rates with their error, or as the range of a sensitive run, and the largest part of the
-    error."""
-    error, total = row.error, math.hypot(*rate)
-    if error is not None and error.range is not None:
-        own = error.range
-        spans = ", ".join(map(range_of, own.low_deg_s, own.high_deg_s))
+def _error(error: ModelError | None) -> str:
+    """The largest part of the error, what the range of a sensitive run is, or why no error is known."""
+    if error is None:
+        return "not known: tipoff convergence measures that of the reference"
+    if (own := error.range) is not None:
         lost = f"; {own.lost} more have no rates" if own.lost else ""
-        return [
-            f"  rate          {spans} deg/s (x, y, z){where}",
-            f"  error         the range is that of {own.runs} runs within 1 µm of clearance{lost}; {_INPUTS}",
-        ]
-    known = error.rate_deg_s if error is not None else None
-    if error is None or known is None:
-        why = (
-            "tipoff convergence measures that of the reference"
-            if error is None
-            else error.not_known
-        )
-        shown = ", ".join(map(uncertain, rate))
-        return [
-            f"  rate          {shown} deg/s (x, y, z), {uncertain(total)} in total{where}",
-            f"  error         not known: {why}",
-        ]
-    shown = ", ".join(rounded(value, known) for value in rate)
+        return f"the range is that of {own.runs} runs within 1 µm of clearance{lost}; {_INPUTS}"
+    if error.rate_deg_s is None:
+        return f"not known: {error.not_known}"
     part = number(error.parts_deg_s[error.largest], ".2g", 1e-3)
-    return [
-        f"  rate          {shown} ± {rounded(known, known)} deg/s (x, y, z), "
-        f"{rounded(total, known)} in total{where}",
-        f"  error         mostly by the {error.largest}, {part} deg/s; {_INPUTS}",
-    ]
+    return f"mostly by the {error.largest}, {part} deg/s; {_INPUTS}"
 
 
 def _guides(row: Single, every: bool) -> list[str]:
@@ -200,37 +162,16 @@ def _guides(row: Single, every: bool) -> list[str]:
     answer is a range."""
     is_one_of_many = row.error is not None and row.error.range is not None
     return [
-        f"  {guide.name:<14}{'; '.join(_of_guide(guide, every or not is_one_of_many))}"
+        f"  {guide.name:<14}{answer.of_guide(guide, every or not is_one_of_many)}"
         for guide in row.guides
         if guide.name.startswith("button") or every
     ]
 
 
-def _of_guide(guide: Guide, rates: bool) -> list[str]:
-    """When a guide leaves the rail, if asked with the ``rates`` then, and its largest force."""
-    words = [f"x = {1e3 * guide.place_m[0]:.4g} mm"]
-    if guide.leaves_s is None or guide.speed_m_s is None or guide.rate_rad_s is None:
-        words.append("does not leave the rail")
-    else:
-        then = ", ".join(uncertain(math.degrees(rate)) for rate in guide.rate_rad_s)
-        words.append(
-            f"leaves at {duration(guide.leaves_s, 4)}, {uncertain(guide.speed_m_s)} m/s"
-            + (f", {then} deg/s" if rates else "")
-        )
-    if guide.largest_force_n is None or guide.largest_force_time_s is None:
-        return [*words, "no force"]
-    force = (
-        f"largest force {guide.largest_force_n:.3g} N at {duration(guide.largest_force_time_s, 4)}"
-    )
-    if guide.moment_n_m is not None:
-        force += f", {math.hypot(*guide.moment_n_m):.3g} N m at its foot"
-    return [*words, force]
-
-
-def _by_hand(row: ConditionRun) -> list[str]:
-    """The settled rates by hand, or why there are none."""
+def _by_hand(row: ConditionRun, every: bool) -> list[str]:
+    """The settled rates by hand; with ``every``, or why there are none."""
     if row.by_hand is None:
-        return [f"  by hand       not valid: {row.no_by_hand}"] if row.no_by_hand else []
+        return [f"  by hand       not valid: {row.no_by_hand}"] if every and row.no_by_hand else []
     return [_hand_line(row.by_hand)]
 
 
@@ -240,8 +181,7 @@ def _by_hand_at_exit(row: ConditionRun) -> list[str]:
 
 
 def _hand_line(found: ByHand) -> str:
-    rates = ", ".join(map(uncertain, found.rate_deg_s))
-    return f"  by hand       {rates} deg/s: {found.words}"
+    return f"  by hand       {answer.rates(found.rate_deg_s)}: {found.words}"
 
 
 def _at_exit(row: ConditionRun) -> list[str]:
@@ -250,9 +190,8 @@ def _at_exit(row: ConditionRun) -> list[str]:
         return []
     if row.at_exit is None:
         return [f"  at exit       not known: {row.no_exit_values}"]
-    rates = ", ".join(map(uncertain, row.at_exit.rate_deg_s))
     speed = uncertain(row.at_exit.velocity_m_s[0], least=1e-4)
-    return [f"  at exit       {rates} deg/s (x, y, z), v_x {speed} m/s"]
+    return [f"  at exit       {answer.rates(row.at_exit.rate_deg_s)} (x, y, z), v_x {speed} m/s"]
 
 
 def _vector(values: Sequence[float]) -> str:

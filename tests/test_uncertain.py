@@ -2,7 +2,7 @@
 
 import pytest
 
-from tipoff.studies.render.uncertain import number, uncertain
+from tipoff.uncertain import number, uncertain
 
 
 @pytest.mark.parametrize(
