@@ -1,4 +1,4 @@
-"""O61, O62: springs push a payload of the surrogate, against closed forms and a plain integration."""
+"""Springs push a payload of the surrogate: strokes, tables and steps. Speeds are in ``tests.mechanics``."""
 
 import numpy as np
 import pytest
@@ -6,23 +6,13 @@ import pytest
 from tests.exact.spring import end_of_stroke
 from tests.lowfi.support import CENTRED, IMMOVABLE, numerics, scene
 from tests.pushed import (
-    MASSES,
-    PUSHER,
     SPRING,
-    TILTS,
-    UNEQUAL,
-    check_share_of_a_pusher,
-    flown,
-    heavy_and_tilted,
-    springs,
 )
 from tipoff import lowfi
 from tipoff.lowfi.single_run import SingleRun
-from tipoff.scenes import scene_model
 
 MASS = 9.9
 INERTIA = {"xx": 0.066, "yy": 0.134, "zz": 0.128, "xy": 0.004, "xz": -0.002}
-LIGHT = {"mass": 20.0, "inertia": {"xx": 1.0, "yy": 1.0, "zz": 1.0}}
 TIGHT = numerics(1e-10)
 
 
@@ -36,27 +26,6 @@ def last(run) -> tuple[float, float]:
     """Speeds (m/s) of payload and platform along X at the end."""
     assert run.status == "time_limit", run.message
     return run.velocity[-1, 0], run.platform_velocity[-1, 0]
-
-
-@pytest.mark.case("O61")
-@pytest.mark.parametrize("friction", [0.0, 3000.0])
-@pytest.mark.parametrize("platform", [IMMOVABLE, LIGHT])
-def test_the_speed_follows_from_the_energy(platform, friction):
-    """With and without friction of the pusher, and of the recoil of a light platform. Friction
-    fades below 1 mm/s, where the payload gains 1e-8 of its energy."""
-    run = lowfi.run(
-        pushed(SPRING | {"friction": friction}, platform=platform), "springs", numerics=TIGHT
-    )
-    exact = end_of_stroke(2e4, 2e5, 0.02, (MASS, platform["mass"]), friction)
-    payload, recoil = last(run)
-    assert payload == pytest.approx(exact.payload, rel=1e-8)
-    assert recoil == pytest.approx(exact.platform, rel=1e-8, abs=1e-12)
-    thrust, lost = run.energy[-1, 0], run.energy[-1, 6]
-    assert thrust == pytest.approx(2e4 * 0.02 - 1e5 * 0.02**2, rel=1e-10)
-    assert lost == pytest.approx(friction * 0.02, rel=1e-7)
-    # Control: the same force over time on a platform that does not move.
-    fixed = end_of_stroke(2e4, 2e5, 0.02, (MASS, np.inf), friction)
-    assert platform is IMMOVABLE or abs(fixed.payload / exact.payload - 1.0) > 0.1
 
 
 @pytest.mark.case("O61")
@@ -79,55 +48,6 @@ def test_the_stroke_lasts_part_of_a_quarter_period():
     # Control: the mean force over the whole stroke ends 2 % early.
     mean = np.sqrt(2.0 * 0.02 * MASS / (2e4 - 1e5 * 0.02))
     assert abs(mean / exact.time - 1.0) > 5e-3
-
-
-@pytest.mark.case("O62")
-def test_unequal_springs_turn_a_free_payload():
-    """Four springs with other forces, rates, strokes and places: rates and velocity after the last
-    stroke, against a plain integration."""
-    asked = pushed(springs())
-    body = scene_model.build(asked).payload
-    exact = flown(body.mass, body.inertia)
-    assert np.abs(exact.rate).min() > 0.01
-    found = asked.replace({"duration": exact.time, "output": {"interval": exact.time / 5}})
-    run = lowfi.run(found, "springs", numerics=TIGHT)
-    np.testing.assert_allclose(run.rate[-1], exact.rate, rtol=1e-7)
-    np.testing.assert_allclose(run.velocity[-1], exact.velocity, rtol=1e-9, atol=1e-12)
-    # Control: all springs at the mean place of their lines turn it otherwise.
-    y, z = np.mean(UNEQUAL, axis=0)[3:]
-    joined = flown(body.mass, body.inertia, [(*row[:3], y, z) for row in UNEQUAL])
-    assert np.abs(joined.rate / exact.rate - 1.0).max() > 0.1
-
-
-@pytest.mark.case("O61")
-@pytest.mark.parametrize("platform", [IMMOVABLE, LIGHT])
-def test_a_pusher_keeps_its_share_of_the_energy(platform):
-    """A pusher of 0.5 kg goes with the payload to the end of the stroke, and its kinetic energy stays
-    behind. Both momenta are kept. Control: without its mass the payload is 2 % faster."""
-    exact = end_of_stroke(2e4, 2e5, 0.02, (MASS, platform["mass"]), 0.0, PUSHER)
-    asked = pushed(SPRING | {"mass": PUSHER}, platform=platform)
-    run = lowfi.run(asked, "springs", numerics=TIGHT)
-    payload, recoil = last(run)
-    assert payload == pytest.approx(exact.payload, rel=1e-9)
-    assert recoil == pytest.approx(exact.platform, rel=1e-9, abs=1e-12)
-    check_share_of_a_pusher(run, MASS, platform["mass"])
-
-
-@pytest.mark.case("O62")
-def test_heavy_and_tilted_pushers_turn_a_free_payload():
-    """Four springs with unequal masses and directions too, against a plain integration. Control: without
-    the masses, or without the tilts, the rates differ by more than 1 %."""
-    asked = pushed(heavy_and_tilted())
-    body = scene_model.build(asked).payload
-    exact = flown(body.mass, body.inertia, masses=MASSES, tilts=TILTS)
-    found = asked.replace({"duration": exact.time, "output": {"interval": exact.time / 5}})
-    run = lowfi.run(found, "springs", numerics=TIGHT)
-    np.testing.assert_allclose(run.rate[-1], exact.rate, rtol=1e-7)
-    np.testing.assert_allclose(run.velocity[-1], exact.velocity, rtol=1e-9, atol=1e-9)
-    # Control:
-    for other in ({"tilts": TILTS}, {"masses": MASSES}):
-        apart = flown(body.mass, body.inertia, **other).rate / exact.rate - 1.0
-        assert np.abs(apart).max() > 0.01
 
 
 def test_each_knot_of_a_table_ends_a_step(tmp_path):
