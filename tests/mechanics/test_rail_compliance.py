@@ -12,7 +12,7 @@ from tipoff import lowfi, scenes
 from tipoff.faults import SceneError
 from tipoff.files import write_sealed
 from tipoff.mechanics.laws.thermal import FIELDS
-from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, content, pairs, record
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, content, pairs, splines
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 from tipoff.scenes.rail_compliance import digest, require
@@ -244,7 +244,7 @@ def test_splines_of_a_large_compliance_are_held_for_one_number_of_modes(monkeypa
     small = of_identity(5)
     held = small.cubic(0)[0]
     assert small.cubic(2)[0] is not held and small.cubic(0)[0] is held
-    monkeypatch.setattr(record, "LARGE", 0.0)
+    monkeypatch.setattr(splines, "LARGE", 0.0)
     first, other = of_identity(5), of_identity(5)
     for again in (first, other):
         held = first.cubic(0)[0]

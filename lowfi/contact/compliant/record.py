@@ -100,12 +100,14 @@ class DrawnWalls(NamedTuple):
 class Compliance(NamedTuple):
     """Compliant contact of f faces on r rails, with its statics at s stations."""
 
-    # (s-1, f, m, 4, p p) m/N, between a face and the m members of its rail, as powers of the distance
-    # (m) from a station, in the patterns of the parts of the faces over the wall (``parts``)
+    # (s-1, k, 4, p p) m/N, blocks between two faces on one rail, as powers of the distance (m) from a
+    # station, in the patterns of the parts of the faces over the wall (``parts``)
     cubic: np.ndarray
-    # (s-1, f, m, 4, d d) m/N, D_res as ``cubic``, in the first d patterns for a coefficient of 1; without
+    # (s-1, k, 4, d d) m/N, D_res as ``cubic``, in the first d patterns for a coefficient of 1; without
     # stations if there is no friction
     dragged: np.ndarray
+    block: np.ndarray  # (f, m) number of the block between a face and the m members of its rail
+    turned: np.ndarray  # (f, m) whether it is this block transposed, that of an earlier face
     origin: float  # m, X of the first face at the first station
     spacing: float  # m, between stations
     members: np.ndarray  # (r, m) numbers of the faces on each rail; -1 fills up
@@ -156,11 +158,14 @@ def build(
     node, crown = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / (5.0 * np.diff(edges))
     flexibility, shape, reach = found.cubic(modes)
     rubbed = found.cubic_of_friction(modes) if model.friction is not None else None
-    dragged, along, reach_along = rubbed or (_none(5), _none(5), np.zeros_like(reach))
+    dragged, along, reach_along = rubbed or (_none(4), _none(5), np.zeros_like(reach))
+    block, turned = found.numbered
     workspace = _workspace(faces.axis.size, members.shape[1], modes, found.degree, model)
     return Compliance(
         cubic=flexibility,
         dragged=dragged,
+        block=block.copy(),
+        turned=turned.copy(),
         origin=float(nominal[0, 0] + found.travel[0]),
         spacing=spacing,
         members=members,

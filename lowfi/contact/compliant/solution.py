@@ -105,17 +105,33 @@ def take_flexibility(compliance, count, place, state):
         over_end = _evaluate(compliance, workspace.order[i], place, state) or over_end
     for i in range(count):
         for j in range(count):
-            c = compliance.cubic[station, workspace.order[i], compliance.among[workspace.order[j]]]
+            face, slot = workspace.order[i], compliance.among[workspace.order[j]]
+            if compliance.turned[face, slot]:
+                _transpose(workspace, i, j)
+                continue
+            c = compliance.cubic[station, compliance.block[face, slot]]
             block, slope = workspace.flexibility[i, j], workspace.slope[i, j]
             for k in range(block.size):
                 block[k] = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
                 slope[k] = changes * (c[1, k] + s * (2.0 * c[2, k] + s * 3.0 * c[3, k]))
-            _add_drag(compliance.dragged, compliance.among, workspace, i, j, station, s, changes)
+            _add_drag(compliance, workspace, i, j, station, s, changes)
             if over_end:
-                face, other = workspace.order[i], workspace.order[j]
+                other = workspace.order[j]
                 parts.block_to_whole(
                     workspace.levels, workspace.part[face], workspace.part[other], block, slope
                 )
+
+
+@kernel
+def _transpose(workspace, i, j):
+    """Fill flexibility and slope between two faces in order from those between j, an earlier face, and
+    i."""
+    size = patterns.count(workspace.levels)
+    for a in range(size):
+        for b in range(size):
+            k, n = a * size + b, b * size + a
+            workspace.flexibility[i, j, k] = workspace.flexibility[j, i, n]
+            workspace.slope[i, j, k] = workspace.slope[j, i, n]
 
 
 @kernel
@@ -135,10 +151,11 @@ def _evaluate(compliance, face, place, state):
 
 
 @kernel
-def _add_drag(dragged, among, workspace, i, j, station, s, changes):
+def _add_drag(compliance, workspace, i, j, station, s, changes):
     """Add what friction adds to flexibility and slope between two faces in order."""
-    if dragged.shape[0] > 0:
-        c = dragged[station, workspace.order[i], among[workspace.order[j]]]
+    if compliance.dragged.shape[0] > 0:
+        slot = compliance.among[workspace.order[j]]
+        c = compliance.dragged[station, compliance.block[workspace.order[i], slot]]
         share, size = workspace.friction[0], patterns.count(workspace.levels)
         for a in range(DRAGGED):
             for b in range(DRAGGED):
@@ -152,14 +169,15 @@ def _add_drag(dragged, among, workspace, i, j, station, s, changes):
 
 
 @kernel
-def _follow_drag(dragged, among, workspace, face, other, station, s, out):
-    """Add to ``out`` the displacement of the wall under a face by the friction of another one, from the
-    forces in ``own``."""
-    if dragged.shape[0] > 0:
-        c, share = dragged[station, face, among[other]], workspace.friction[0]
+def _follow_drag(compliance, workspace, face, slot, station, s, out):
+    """Add to ``out`` the displacement of the wall under a face by the friction of the one in a ``slot``,
+    from the forces in ``own``."""
+    if compliance.dragged.shape[0] > 0:
+        c = compliance.dragged[station, compliance.block[face, slot]]
+        share, turned = workspace.friction[0], compliance.turned[face, slot]
         for a in range(DRAGGED):
             for b in range(DRAGGED):
-                k = a * DRAGGED + b
+                k = b * DRAGGED + a if turned else a * DRAGGED + b
                 value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
                 out[a] += share * value * workspace.own[b]
 
@@ -302,13 +320,17 @@ def follow(compliance, face, place, count, state, out):
         parts.to_part(
             workspace.levels, workspace.part[other], workspace.force[other], workspace.own
         )
-        c = compliance.cubic[station, face, compliance.among[other]]
+        slot = compliance.among[other]
+        c, turned = (
+            compliance.cubic[station, compliance.block[face, slot]],
+            compliance.turned[face, slot],
+        )
         for a in range(size):
             for b in range(size):
-                k = a * size + b
+                k = b * size + a if turned else a * size + b
                 value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
                 out[a] += value * workspace.own[b]
-        _follow_drag(compliance.dragged, compliance.among, workspace, face, other, station, s, out)
+        _follow_drag(compliance, workspace, face, slot, station, s, out)
     if over_end:
         parts.to_whole(workspace.levels, workspace.part[face], out, 0, 1)
     for a in range(size):

@@ -24,11 +24,11 @@ def least_share(compliance: Compliance, face: int, place: float) -> float:
     way = place - compliance.ahead[face] - compliance.origin
     station = int(np.clip(way // compliance.spacing, 0, len(compliance.cubic) - 1))
     powers = (way - station * compliance.spacing) ** np.arange(4)
-    own, among = compliance.workspace, compliance.among[face]
+    own, block = compliance.workspace, compliance.block[face, compliance.among[face]]
     size = own.force.shape[1]
-    flexibility = (powers @ compliance.cubic[station, face, among]).reshape(size, size)
+    flexibility = (powers @ compliance.cubic[station, block]).reshape(size, size)
     if len(compliance.dragged):
-        drag = (powers @ compliance.dragged[station, face, among]).reshape(DRAGGED, DRAGGED)
+        drag = (powers @ compliance.dragged[station, block]).reshape(DRAGGED, DRAGGED)
         flexibility[:DRAGGED, :DRAGGED] += own.friction[0] * drag
     half, span = np.abs(compliance.half[face]), own.part[face, HALF]
     area = 4.0 * half[0] * half[1] * span

@@ -36,6 +36,23 @@ def beside(rail: np.ndarray) -> np.ndarray:
     return np.where(rail[:, None] >= 0, members(rail)[rail], -1)
 
 
+def numbered(rail: np.ndarray, once: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers (f,m) of the stored blocks between each face and those ``beside`` it, -1 without one, and
+    whether (f,m) a block is the stored one transposed. If they are stored ``once``, the later face of a
+    pair has the block of the earlier one: symmetric tables differ between both by rounding alone."""
+    near, count = beside(rail), 0
+    number, turned = np.full(near.shape, -1), np.zeros(near.shape, dtype=np.bool_)
+    for face, row in enumerate(near):
+        for place, other in enumerate(row[row >= 0]):
+            if once and other < face:
+                turned[face, place] = True
+                number[face, place] = number[other, near[other] == face][0]
+            else:
+                number[face, place] = count
+                count += 1
+    return number, turned
+
+
 def of_rail(table: np.ndarray, own: np.ndarray) -> np.ndarray:
     """Matrices (s,n p,n q) between the n faces ``own`` of one rail, all its members."""
     block = table[:, own, : own.size].transpose(0, 1, 3, 2, 4)

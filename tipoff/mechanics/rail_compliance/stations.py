@@ -36,19 +36,17 @@ def between_faces(
     rail: np.ndarray,
     on_part: np.ndarray,
     breaks: Sequence[tuple[int, ...]],
+    once: bool,
 ) -> np.ndarray:
-    """Splines (s-1,f,m,4,p p) through a ``table`` (s,f,m,p,p) between the faces on each ``rail``
-    (``pairs``), in the patterns of the parts that ``on_part`` (s,f,q,q) turns those of whole faces into.
-    A slope may jump at the ``breaks`` of either face."""
-    stations, faces, members, size, _ = table.shape
+    """Splines (s-1,k,4,p p) through the k blocks of a ``table`` (s,f,m,p,p) between the faces on each
+    ``rail`` that are stored, ``once`` for both orders of a pair or not (``pairs.numbered``), in the patterns
+    of the parts that ``on_part`` (s,f,q,q) turns those of whole faces into. A slope may jump at the
+    ``breaks`` of either face."""
+    stations, _, _, size, _ = table.shape
     part = on_part[..., :size, :size].swapaxes(-1, -2)
-    found = np.zeros((stations - 1, faces, members, 4, size * size))
-    every = [
-        (face, place, other)
-        for face, near in enumerate(pairs.beside(rail))
-        for place, other in enumerate(near)
-        if other >= 0
-    ]
+    near, (number, turned) = pairs.beside(rail), pairs.numbered(rail, once)
+    every = [(face, place, near[face, place]) for face, place in np.argwhere((near >= 0) & ~turned)]
+    found = np.zeros((stations - 1, len(every), 4, size * size))
     alike: dict[tuple[int, ...], list] = {}
     for pair in every:
         own = tuple(sorted({*breaks[pair[0]], *breaks[pair[2]]}))
@@ -60,7 +58,7 @@ def between_faces(
             block = part[:, face] @ table[:, face, place] @ part[:, other].swapaxes(-1, -2)
             spline = _between(travel, block.reshape(stations, -1), own)
             spline = spline.reshape(stations - 1, 4, face.size, -1)
-            found[:, face, place] = spline.swapaxes(1, 2)
+            found[:, number[face, place]] = spline.swapaxes(1, 2)
     return found
 
 
