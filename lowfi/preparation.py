@@ -59,7 +59,7 @@ def prepare(
         model,
         compliance=pressed,
         thermal_offset=thermal_offset.under_pads(model, found),
-        neglected=neglected.watched(found, damping, watches),
+        neglected=neglected.watched(found, damping, pressed, watches),
     )
     steps, every = plan.make(model, scene.time_limit, numerics), cases.of_models(common, models)
     if model.initial.settled:

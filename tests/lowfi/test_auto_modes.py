@@ -16,6 +16,7 @@ from tests.highfi.support import COARSE
 from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tipoff import highfi, lowfi
 from tipoff.lowfi import Numerics, modes
+from tipoff.lowfi.contact.compliant import neglected
 from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import load, scene_model
@@ -114,6 +115,31 @@ def test_the_estimate_has_the_size_of_the_effect(condition):
     )
     effect = apart(every.outcome.rate, static.outcome.rate)
     assert 0.25 < effect / np.degrees(watched.neglected().sum()) < 2.0
+
+
+def test_friction_drives_the_watched_modes_too(monkeypatch):
+    """As if their shapes along X, times half its coefficient, were a part of those along the normals.
+    Control: without them the estimate is another."""
+    asked, compliance = REFERENCE.condition("phi35"), reference_compliance()
+
+    def estimated(changed) -> np.ndarray:
+        monkeypatch.setattr(neglected, "build", changed)
+        watched = SingleRun(asked, Numerics(modes=0), compliance, watches=True)
+        watched.begin()
+        watched.integrate(None)
+        return watched.neglected()
+
+    plain = neglected.build
+
+    def within(square, drag, shapes, along, friction):
+        together = shapes.copy()
+        together[..., : along.shape[-1]] += 0.5 * friction[0] * along
+        return plain(square, drag, together)
+
+    found = estimated(plain)
+    assert found == pytest.approx(estimated(within), rel=1e-9)
+    alone = estimated(lambda square, drag, shapes, *_: plain(square, drag, shapes))
+    assert found.sum() != pytest.approx(alone.sum(), rel=1e-3)
 
 
 CONDITIONS = ("phi0", "phi15", "phi35", "phi60", "phi90", "h1")

@@ -38,14 +38,12 @@ def evaluate(modes, rail, face, station, way, changes, state):
         modes.slope[face, :] = 0.0
         modes.speed[face, :] = 0.0
         for i in range(count):
-            c, q, rate = modes.cubic[station, face, i], state[first + i], state[rates + i]
+            q, rate = state[first + i], state[rates + i]
             for a in range(size):
-                own, ahead = _between(c, a, way)
-                rubbed, ahead_rubbed = _by_friction(modes, station, face, i, a, way)
-                value = own + rubbed
+                value, ahead = shape(modes, station, face, i, a, way)
                 modes.shape[face, i, a] = value
                 modes.offset[face, a] += q * value
-                modes.slope[face, a] += q * changes * (ahead + ahead_rubbed)
+                modes.slope[face, a] += q * changes * ahead
                 modes.speed[face, a] += rate * value
 
 
@@ -57,13 +55,15 @@ def _between(c, a, way):
 
 
 @inlined
-def _by_friction(modes, station, face, i, a, way):
-    """mu / 2 V of mode i in pattern a, and its derivative; zeros without friction."""
-    value, ahead = 0.0, 0.0
-    if a < DRAGGED and modes.dragged.shape[0] > 0:
-        value, ahead = _between(modes.dragged[station, face, i], a, way)
-    share = 0.5 * modes.friction[0]
-    return share * value, share * ahead
+def shape(shapes, station, face, i, a, way):
+    """S of mode i in pattern a under ``face``, ``way`` (m) from a station, and its derivative; ``shapes`` has
+    W and V, ``cubic`` and ``dragged``, the latter without stations if there is no friction."""
+    value, ahead = _between(shapes.cubic[station, face, i], a, way)
+    rubbed, ahead_rubbed = 0.0, 0.0
+    if a < DRAGGED and shapes.dragged.shape[0] > 0:
+        rubbed, ahead_rubbed = _between(shapes.dragged[station, face, i], a, way)
+    share = 0.5 * shapes.friction[0]
+    return value + share * rubbed, ahead + share * ahead_rubbed
 
 
 @kernel

@@ -4,12 +4,13 @@ from the forces of the run.
 The force of the pads on a mode m, linear between the ends of steps, drives a separate oscillator,
 exactly::
 
-    f_m = sum_ia W_iam P_ia,    q_m'' + d_m q_m' + omega_m^2 q_m = f_m
+    f_m = sum_ia S_iam P_ia,    q_m'' + d_m q_m' + omega_m^2 q_m = f_m
 
-A quasi-static mode has q_m = f_m / omega_m^2: no energy stays in it after the pads leave. The
-oscillator keeps E_m = (q_m'^2 + omega_m^2 q_m^2) / 2. For a half-sine of duration T on a mode of
-frequency f at rest, the closed form is the residual shock spectrum (Harris' Shock and Vibration
-Handbook, chapter on shock response spectra)::
+with the shapes S of ``modes``, those of pressure and friction. A quasi-static mode has
+q_m = f_m / omega_m^2: no energy stays in it after the pads leave. The oscillator keeps
+E_m = (q_m'^2 + omega_m^2 q_m^2) / 2. For a half-sine of duration T on a mode of frequency f at rest,
+the closed form is the residual shock spectrum (Harris' Shock and Vibration Handbook, chapter on shock
+response spectra)::
 
     omega sqrt(2 E) / F = |4 f T cos(pi f T) / (1 - 4 f^2 T^2)|
 
@@ -33,9 +34,9 @@ from tipoff.kernels.jit import kernel
 from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.compliant import parts, patterns
+from tipoff.lowfi.contact.compliant import modes, parts, patterns
 from tipoff.lowfi.contact.compliant.free_vibration import is_pressed, oscillated
-from tipoff.lowfi.contact.compliant.record import drag_of
+from tipoff.lowfi.contact.compliant.record import Compliance, drag_of
 from tipoff.lowfi.contact.compliant.solution import between_stations
 from tipoff.lowfi.contact.springs import outward, pad_point, relative_pose
 from tipoff.lowfi.contact.step_limit import inverse_mass
@@ -64,6 +65,8 @@ class Neglected(NamedTuple):
     """All n modes of each of r rails under f faces, and their effect."""
 
     cubic: np.ndarray  # (s-1, f, n, 4, p) 1/kg^0.5, as in ``record.Modes``
+    dragged: np.ndarray  # (s-1, f, n, 4, d) 1/kg^0.5, likewise
+    friction: np.ndarray  # (1,) coefficient of the friction that drags the walls
     modes: np.ndarray  # (r, n) of MODE
     rails: np.ndarray  # (r,) of RAIL
     faces: np.ndarray  # (f,) of FACE
@@ -71,27 +74,39 @@ class Neglected(NamedTuple):
 
 
 def watched(
-    found: RailCompliance | None, damping: Damping | None, watches: bool
+    found: RailCompliance | None,
+    damping: Damping | None,
+    pressed: Compliance | None,
+    watches: bool,
 ) -> Neglected | None:
-    """Record of the modes of the rail compliance ``found`` with the ``damping`` of its rails. If
-    no run ``watches`` them, it has no modes, so that the kernels are the same. None for rigid
-    walls."""
-    if found is None or found.flexibility is None:
+    """Record of the modes of the rail compliance ``found``, whose record is ``pressed``, with the
+    ``damping`` of its rails. If no run ``watches`` them, it has no modes, so that the kernels are the same.
+    None for rigid walls."""
+    if found is None or pressed is None:
         return None
     if not watches:
         none = zeros((0, 0))
         return build(none, none, zeros((0, 0, 0, 0, 0)))
-    square = found.frequency**2
-    return build(square, drag_of(square, damping), found.shapes)
+    square, drag = found.frequency**2, drag_of(found.frequency**2, damping)
+    along = found.shapes_along if pressed.dragged.size else None
+    return build(square, drag, found.shapes, along, pressed.workspace.friction)
 
 
-def build(square: np.ndarray, drag: np.ndarray, cubic: np.ndarray) -> Neglected:
+def build(
+    square: np.ndarray,
+    drag: np.ndarray,
+    cubic: np.ndarray,
+    dragged: np.ndarray | None = None,
+    friction: np.ndarray | None = None,
+) -> Neglected:
     """Record at rest."""
-    modes = np.zeros(square.shape, MODE)
-    modes["square"], modes["drag"] = square, drag
+    at_rest = np.zeros(square.shape, MODE)
+    at_rest["square"], at_rest["drag"] = square, drag
     return Neglected(
         cubic=cubic,
-        modes=modes,
+        dragged=zeros((0, 0, 0, 0, 0)) if dragged is None else dragged,
+        friction=zeros((1,)) if friction is None else friction,
+        modes=at_rest,
         rails=np.zeros(square.shape[0], RAIL),
         faces=np.zeros(cubic.shape[1], FACE),
         effect=zeros((square.shape[1],)),
@@ -155,10 +170,10 @@ def _press(neglected, system, loop, rail):
         for k in range(compliance.members.shape[1]):
             face = compliance.members[rail, k]
             if face >= 0 and loop.touching[face]:
-                c, own = neglected.cubic[station, face, i], workspace.part[face]
+                own = workspace.part[face]
                 parts.to_part(workspace.levels, own, workspace.force[face], pressure)
                 for a in range(size):
-                    value = c[0, a] + way * (c[1, a] + way * (c[2, a] + way * c[3, a]))
+                    value, _ = modes.shape(neglected, station, face, i, a, way)
                     total += value * pressure[a]
         drive(neglected.modes[rail, i], dt, total)
     for k in range(compliance.members.shape[1]):

@@ -104,6 +104,11 @@ class Splined:
         return self._of_modes(self.shape)[0]
 
     @cached_property
+    def shapes_along(self) -> np.ndarray:
+        """Shapes (s-1,f,n,4,d) of all modes along X, as in ``cubic_of_friction``."""
+        return self._of_modes(residual.along(self))[0]
+
+    @cached_property
     def _cubics(self) -> dict:
         return {}
 
