@@ -166,3 +166,5 @@ def test_a_sensitive_run_has_the_range_of_its_neighbours(walls):
     assert all(text[name].count(" to ") >= 2 for name in ("velocity", "rate", "direction"))
     assert f"{found.runs} runs" in text["error"]
     assert tipoff.run(TINY.condition("phi15"), compliance=walls).error.range is None
+    assert len(found.rates_deg_s) == found.runs
+    assert found.within(lambda rates: rates[0]) == (found.low_deg_s[0], found.high_deg_s[0])

@@ -2,12 +2,13 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 
-class Range(NamedTuple):
+@dataclass(frozen=True, kw_only=True)
+class Range:
     """Lowest and highest values of a run and its neighbours, which have up to 1 um more or less of every
     clearance, or a tighter tolerance."""
 
@@ -23,6 +24,13 @@ class Range(NamedTuple):
     #: Number of runs that have rates, and of those that have none.
     runs: int
     lost: int
+    #: Rates about x, y, z of each run that has some; empty in files of version 1.0.0.
+    rates_deg_s: tuple[tuple[float, ...], ...] = ()
+
+    def within(self, measure: Callable[[Sequence[float]], float]) -> tuple[float, float]:
+        """The smallest and the largest ``measure`` of the rates of a run."""
+        found = [measure(rates) for rates in self.rates_deg_s]
+        return min(found), max(found)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,8 +77,7 @@ class ModelError:
 
     def plain(self) -> dict:
         """As in results, for JSON: the fields, ``rate_deg_s`` and ``largest``."""
-        own = asdict(self) | {"range": self.range and self.range._asdict()}
-        return own | {"rate_deg_s": self.rate_deg_s, "largest": self.largest}
+        return asdict(self) | {"rate_deg_s": self.rate_deg_s, "largest": self.largest}
 
     @classmethod
     def of(cls, found: Mapping) -> "ModelError":
@@ -79,6 +86,7 @@ class ModelError:
             name: tuple(value) if isinstance(value, list) else value
             for name, value in (found["range"] or {}).items()
         }
+        own |= {"rates_deg_s": tuple(map(tuple, own.get("rates_deg_s", ())))} if own else {}
         return cls(
             parts_deg_s=found["parts_deg_s"],
             not_known=found["not_known"],

@@ -54,6 +54,17 @@ def kept(store: Store, run: Run, nominal: Trajectory, moved: Disturbed) -> Model
     )
 
 
+def range_of(store: Store, run: Run, nominal: Trajectory, clearance_change: float) -> Range | None:
+    """The range over the neighbours of ``nominal``, which is of ``run``, as ``kept``; None for a run that is not
+    sensitive to ``clearance_change`` (m) and for one without rates."""
+    if nominal.outcome.rate is None:
+        return None
+    moved = disturbed.kept(store, run, nominal, clearance_change)
+    if not disturbed.is_sensitive(moved, run.scene):
+        return None
+    return kept(store, run, nominal, moved).range
+
+
 def is_kept(store: Store, run: Run) -> bool:
     """Whether a file in the ``store`` has an error of ``run``, maybe of another version."""
     return store.path(run).with_suffix(_SUFFIX).exists()
@@ -153,8 +164,13 @@ def _range(run: Run, nominal: Trajectory, moved: Disturbed) -> Range:
         high_deg_s=tuple(rates.max(axis=0).tolist()),
         low_m_s=tuple(velocity.min(axis=0).tolist()),
         high_m_s=tuple(velocity.max(axis=0).tolist()),
-        off_axis_deg=(float(off.min()), float(off.max())),
-        across_m_s=(float(across.min()), float(across.max())),
+        off_axis_deg=_ends(off),
+        across_m_s=_ends(across),
         runs=len(known),
         lost=len(runs) - len(known),
+        rates_deg_s=tuple(map(tuple, rates.tolist())),
     )
+
+
+def _ends(values: np.ndarray) -> tuple[float, float]:
+    return float(values.min()), float(values.max())

@@ -8,6 +8,7 @@ import pytest
 from tests.studies import kept
 from tests.studies.shown import html
 from tests.studies.synthetic import COSTS, flight
+from tipoff.results.model_error import Range as NeighbourRange
 from tipoff.studies.nominal import page, spread
 from tipoff.studies.nominal.spread import Range
 from tipoff.studies.nominal.stage import STAGE, answer
@@ -53,6 +54,28 @@ def test_each_number_has_its_unit_its_meaning_and_its_range(found):
     assert shown[1] == ("-2.0 deg/s", "rate about X, roll; 95 % of launches: -4.0 to 10.4 deg/s")
     values = [value for value, _ in shown[2:]]
     assert values == ["1.00 deg/s", "2.00 deg/s", "13.65 m/s", "12.30 ms"]
+
+
+def test_a_sensitive_scene_is_the_range_of_its_neighbours(found):
+    """In place of its values. Control: the time of the exit, which neighbours do not have."""
+    own = NeighbourRange(
+        low_deg_s=(-3.0, 0.0, 2.0),
+        high_deg_s=(0.0, 0.0, 4.0),
+        low_m_s=(13.6, 0.0, 0.0),
+        high_m_s=(13.7, 0.0, 0.0),
+        off_axis_deg=(0.0, 0.0),
+        across_m_s=(0.0, 0.0),
+        runs=2,
+        lost=0,
+        rates_deg_s=((-3.0, 0.0, 4.0), (0.0, 0.0, 2.0)),
+    )
+    reference, surrogate = found.rows
+    sensitive = replace(found, rows=(reference, replace(surrogate, range=own)))
+    values = [value for value, _ in page.figures(sensitive)]
+    assert values[:2] == ["2.00 to 5.00 deg/s", "-3.00 to 0.00 deg/s"]
+    assert values[4:] == ["13.600 to 13.700 m/s", "12.30 ms"]
+    said = html(page.draw(sensitive))
+    assert "the range of 2 runs within 1 µm of clearance" in said and "at most 0.25" not in said
 
 
 def test_what_the_numbers_are_is_said(found):

@@ -12,12 +12,15 @@ from tests.studies.convergence import stub
 from tests.studies.shown import Documents, html
 from tests.studies.synthetic import COSTS, flight
 from tipoff import scenes
+from tipoff.results.model_error import Range
 from tipoff.scenes import drawing
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.populations.exceedance import Limit
+from tipoff.studies.render.table import Table
 from tipoff.studies.report import answer
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
+from tipoff.studies.runs.results import AtExit
 from tipoff.studies.runs.stage import row
 
 
@@ -96,16 +99,7 @@ def test_limits_are_judged_at_the_exit_where_a_motor_burns_on(page):
 def test_limits_are_judged_by_the_range_that_replaces_a_value(page):
     """A neighbour of phi60 is above the limit, its own rate is not."""
     rates = [[1.0, 0.3, 0.4], [7.0, 0.3, 0.4]]
-    page.results["agreement"]["distributions"] = [
-        {
-            "condition": "phi60",
-            "neighbours": 2,
-            "further": 16,
-            "limit_deg_s": 0.1,
-            "reference_deg_s": rates,
-            "models": {},
-        }
-    ]
+    page.results["agreement"]["distributions"] = [_neighbours(rates)]
     assert "above or not settled: all 2 conditions" in html(answer.draw(page))
 
 
@@ -214,6 +208,66 @@ def test_a_spread_condition_has_its_range_over_neighbours(page):
     assert "± 13" not in shown and "-31.0 to -12.0" in shown and "2.00 to 10.00" in shown
     assert "<b>12.0 to 31.0</b><span>largest roll rate (deg/s): phi15, over 3 neighbours" in shown
     assert "moved by less than 1 µm" in shown
+
+
+def _sensitive(at_exit=False):
+    """The row of a run on compliant contact, whose two neighbours roll by 5 and 9 deg/s."""
+    own = Range(
+        low_deg_s=(5.0, 3.0, 4.0),
+        high_deg_s=(9.0, 6.0, 8.0),
+        low_m_s=(13.5, -0.1, 0.0),
+        high_m_s=(13.7, 0.1, 0.2),
+        off_axis_deg=(0.1, 0.9),
+        across_m_s=(0.0, 0.2),
+        runs=2,
+        lost=8,
+        rates_deg_s=((5.0, 3.0, 4.0), (9.0, 6.0, 8.0)),
+    )
+    one = replace(row("phi60", settled(1.0, 0.3, 0.4), ""), range=own)
+    exit_ = AtExit(velocity_m_s=(1.0, 0.0, 0.0), rate_deg_s=(2.0, 0.0, 0.0))
+    return replace(one, impulse_after_exit=0.7, at_exit=exit_) if at_exit else one
+
+
+def test_a_sensitive_run_has_ranges_in_all_its_cells(page):
+    """Velocity, rates and direction, and the limits are judged by them. Control: the same rows without the
+    range have values, and the comparison's neighbours by finite elements come before those of the surrogate."""
+    alone = html(answer.draw(page))
+    assert (
+        "13.6457" in alone and "above or not settled: phi15" in alone and "A range in" not in alone
+    )
+    page.results["lowfi"] = {"conditions": [asdict(_sensitive())], "failed": []}
+    shown = html(answer.draw(page))
+    for words in ("13.500 to 13.700", "5.00 to 9.00", "5.0 to 10.0", "0.100 to 0.900"):
+        assert words in shown and words not in alone
+    assert "1.000 ± " not in shown and "A range in place of a value" in shown
+    assert "above or not settled: all 2 conditions" in shown  # 9 deg/s are above 6
+    assert "largest angle off axis (deg): phi60" in shown
+    page.results["agreement"]["distributions"] = [_neighbours([[1.0, 0.0, 2.0], [1.5, 0.0, 2.5]])]
+    both = html(answer.draw(page))
+    assert "1.00 to 1.50" in both and "5.00 to 9.00" not in both and "13.500 to 13.700" in both
+
+
+def test_a_sensitive_run_under_thrust_has_its_ranges_at_the_exit(page):
+    """There are no neighbours for the settled values, which no number stands for."""
+    own = _sensitive(at_exit=True)
+    for name in ("highfi", "lowfi"):
+        page.results[name] = {"conditions": [asdict(own)], "failed": []}
+    (table,) = (part for part in answer.draw(page) if isinstance(part, Table))
+    cells = dict(zip(table.heads, table.rows[0]))
+    assert cells["at exit: roll, transverse (deg/s)"] == "5.00 to 9.00, 5.0 to 10.0"
+    assert cells["roll rate (deg/s)"] is cells["transverse rate (deg/s)"] is None
+    assert cells["off axis (deg)"] is None and "x" in cells["limits at the exit"]
+
+
+def _neighbours(rates):
+    return {
+        "condition": "phi60",
+        "neighbours": len(rates),
+        "further": 16,
+        "limit_deg_s": 0.1,
+        "reference_deg_s": rates,
+        "models": {},
+    }
 
 
 def test_the_scene_itself_comes_first(page):

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 from tipoff.mechanics import instant
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.run_limits import EXIT_WINDOW, SETTLE_WINDOW
+from tipoff.results.model_error import Range as NeighbourRange
 from tipoff.scenes import halving
-from tipoff.studies.nominal.spread import QUANTITIES, Range, Spread
+from tipoff.studies.nominal.spread import QUANTITIES, SPEED, Range, Spread
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
 from tipoff.studies.render.document import Caption, KeyFigures, Part
 from tipoff.uncertain import LEAST, SHARE, STEPS, number, range_of, rounded
@@ -59,11 +60,28 @@ def _shown(item: Quantity, found: "Nominal") -> str:
     values = _values(found)
     assert values is not None
     least = STEPS.get(item.unit, LEAST)
+    if (own := _neighbours(found)) is not None and (over := _over(own, item)) is not None:
+        return range_of(*over, least=least)
     if (ends := _ends(found.spread, item)) is not None:
         return rounded(values[item.name], SHARE * (ends.high - ends.low), least)
     both = [answer[item.name] for answer in found.answer.values() if answer]
     apart = max(both) - min(both) if len(both) > 1 else None
     return rounded(values[item.name], apart, least)
+
+
+def _neighbours(found: "Nominal") -> NeighbourRange | None:
+    """The range of the scene itself over its neighbours, which stands for its values if it is sensitive."""
+    return next((row.range for row in found.rows if row.range is not None), None)
+
+
+def _over(own: NeighbourRange, item: Quantity) -> tuple[float, float] | None:
+    """Both ends of a quantity over the neighbours; None for one that they do not have."""
+    if item.name == SPEED.name:
+        return own.low_m_s[0], own.high_m_s[0]
+    if item.name == TOTAL_RATE.name:
+        return own.within(lambda rates: math.hypot(*rates))
+    axes = [axis for axis, rate in enumerate(RATES) if rate.name == item.name]
+    return (own.low_deg_s[axes[0]], own.high_deg_s[axes[0]]) if axes else None
 
 
 def _ends(spread: Spread | None, item: Quantity) -> Range | None:
@@ -94,7 +112,13 @@ def notes(found: "Nominal") -> list[str]:
             f"The scene itself, by {of}: means {_when(found)}, rates inertial in payload body axes, "
             "velocity in the initial scene axes"
         ]
-    if reference and surrogate:
+    own = _neighbours(found)
+    if own is not None:
+        said.append(
+            f"The scene itself is sensitive: its rates and velocity are the range of {own.runs} runs within 1 µm of "
+            "clearance by compliant contact, with no single value"
+        )
+    elif reference and surrogate:
         apart = max(abs(reference[item.name] - surrogate[item.name]) for item in RATES)
         said.append(f"Compliant contact differs by at most {number(apart, '.2g', LEAST)} deg/s")
     elif of:

@@ -54,7 +54,12 @@ def run(study: Study) -> Made[Nominal]:
         found = runs.fill(study, NAME, requested)
         paths = [study.store.path(each) for each in requested.values()]
         rows = {
-            model: runs.row(NOMINAL, found[model], study.relative(path))
+            model: runs.ranged(
+                study,
+                requested[model],
+                found[model],
+                runs.row(NOMINAL, found[model], study.relative(path)),
+            )
             for model, path in zip(requested, paths)
         }
         failed = [

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
-from tipoff.mechanics.instant import EXIT, Instant, chosen
+from tipoff.mechanics.instant import EXIT, SETTLED, Instant, chosen
 from tipoff.mechanics.instant import where as instant_words
+from tipoff.results.model_error import Range
 from tipoff.scenes import drawing
 from tipoff.scenes.overrides import is_drop
 from tipoff.studies.agreement import distribution_page, verdicts
@@ -25,7 +26,7 @@ from tipoff.studies.populations.exceedance import TOTAL, Limit
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.report import trust
-from tipoff.studies.runs.results import ConditionRun, Settled, roll, transverse
+from tipoff.studies.runs.results import ConditionRun, roll, transverse
 from tipoff.uncertain import (
     LEAST,
     STEPS,
@@ -46,8 +47,9 @@ _NOTE = (
     "±: the largest uncertainty of the reference by mesh, step and contact cells."
 )
 _RANGE_NOTE = (
-    "A range in place of a value: from the smallest to the largest settled rate of the same launch with "
-    "payload and walls moved by less than 1 µm, by finite elements on the coarse mesh."
+    "A range in place of a value: the launch is sensitive, and the range is that of the same launch with payload "
+    "and walls moved by less than 1 µm. Settled rates by finite elements on the coarse mesh, where the comparison "
+    "has run them; all else by compliant contact. A dash: no neighbours were run for this value."
 )
 _EXIT_NOTE = (
     "At exit: means over 0.2 ms from the exit on, under the thrust that there is then. The impulse "
@@ -57,6 +59,8 @@ _AT_EXIT = (
     "at exit: roll, transverse (deg/s)",
     Column("impulse after exit", "%", ".2g", 100.0),
 )
+Spread = Distribution | Range  # rates of neighbours
+Spreads = dict[str, Spread]  # by condition; settled, if nothing else is said
 _BURNT = 1e-3  # of the impulse: a smaller share after the exit is not shown
 _HAND_NOTE = (
     "By hand: the same two rates of a rigid payload, from the moment impulse of the thrust over "
@@ -75,9 +79,13 @@ def draw(page: "Page") -> list[Part]:
         return [*first, page.missing("highfi", "highfi"), drawing.launcher(page.scene)]
     agreement = page.result(compare.STAGE)
     compared = {row.condition: row for row in agreement.compliant} if agreement else {}
-    spreads = _spreads(agreement)
-    rates = [*_speed(page, rows), *_largest(rows, compared, spreads)]
-    figures = [*rates, *_limits(rows, page.limits, spreads), *_models(page, agreement)]
+    ranges = {row.condition: row.range for row in page.rows()["lowfi"] if row.range}
+    at = {row.condition: row.at for row in rows}
+    settled = {name: own for name, own in ranges.items() if at.get(name) == SETTLED}
+    spreads: Spreads = settled | _spreads(agreement)
+    rates = [*_speed(page, rows), *_largest(rows, compared, spreads, settled)]
+    limited: Spreads = {**ranges} if _instant(rows).at == EXIT else spreads
+    figures = [*rates, *_limits(rows, page.limits, limited), *_models(page, agreement)]
     over_all = [KeyFigures(figures)]
     return [
         *first,
@@ -86,28 +94,26 @@ def draw(page: "Page") -> list[Part]:
         Bullets(trust.lines(page.scene, compared, agreement)),
         drawing.launcher(page.scene),
         Heading("Every condition"),
-        _conditions(page, rows, compared, spreads),
+        _conditions(page, rows, compared, spreads, ranges),
     ]
 
 
 def above(
-    row: ConditionRun, limits: Sequence[Limit], at: str, spread: Distribution | None = None
+    row: ConditionRun, limits: Sequence[Limit], at: str, spread: Spread | None = None
 ) -> list[str] | None:
-    """The axes on which a rate of a condition at an instant is above a limit; of the settled rates of any
-    neighbour, if a ``spread`` replaces them. None without a rate."""
+    """The axes on which a rate of a condition at an instant is above a limit; of any neighbour, if a ``spread``
+    of rates at this instant replaces them. None without a rate."""
     values = row.at_exit if at == EXIT else row.settled
     if values is None:
         return None
-    every = spread.settled_deg_s if spread is not None and at != EXIT else [values.rate_deg_s]
-    return [
-        limit.axis
-        for limit in limits
-        if any(
-            (math.hypot(*rates) if limit.axis == TOTAL else abs(rates["xyz".index(limit.axis)]))
-            > limit.deg_s
-            for rates in every
-        )
-    ]
+
+    def largest(axis: str) -> float:
+        def size(rates: Sequence[float]) -> float:
+            return math.hypot(*rates) if axis == TOTAL else abs(rates["xyz".index(axis)])
+
+        return size(values.rate_deg_s) if spread is None else spread.within(size)[1]
+
+    return [limit.axis for limit in limits if largest(limit.axis) > limit.deg_s]
 
 
 def _instant(rows: Sequence[ConditionRun]) -> Instant:
@@ -145,7 +151,8 @@ def _speed(page: "Page", rows: Sequence[ConditionRun]) -> list[tuple[str, str]]:
 def _largest(
     rows: Sequence[ConditionRun],
     compared: dict[str, verdicts.JudgedCondition],
-    spreads: dict[str, Distribution],
+    spreads: Spreads,
+    ranges: dict[str, Range],
 ) -> list[tuple[str, str]]:
     settled = {row.condition: row.settled for row in rows if row.settled}
     if not settled:
@@ -173,18 +180,26 @@ def _largest(
         sure = [one for one in settled if one not in compared or compared[one].reference_converged]
         words = f"{words}: {name}"
         if name in spreads:
-            words += f", over {counted(len(spreads[name].settled_deg_s), 'neighbour')} within 1 µm"
+            words += f", over {counted(_runs(spreads[name]), 'neighbour')} within 1 µm"
         elif name not in sure:
             words += ", not converged"
             words += "; of the converged ones {} ({})".format(*shown(sure)) if sure else ""
         figures.append((value, words))
-    name = max(settled, key=lambda name: settled[name].direction_error_deg)
-    off = settled[name].direction_error_deg
-    return [*figures, (number(off, ".2g", LEAST), f"largest angle off axis (deg): {name}")]
+    turned = {name: (own.direction_error_deg,) * 2 for name, own in settled.items()}
+    turned |= {name: own.off_axis_deg for name, own in ranges.items()}
+    name = max(turned, key=lambda name: turned[name][1])
+    low, high = turned[name]
+    off = number(high, ".2g", LEAST) if low == high else range_of(low, high, STEPS["deg"])
+    return [*figures, (off, f"largest angle off axis (deg): {name}")]
+
+
+def _runs(spread: Spread) -> int:
+    """The number of neighbours that have rates."""
+    return len(spread.rates_deg_s if isinstance(spread, Range) else spread.settled_deg_s)
 
 
 def _limits(
-    rows: Sequence[ConditionRun], limits: Sequence[Limit], spreads: dict[str, Distribution]
+    rows: Sequence[ConditionRun], limits: Sequence[Limit], spreads: Spreads
 ) -> list[tuple[str, str]]:
     if not limits:
         return []
@@ -221,7 +236,8 @@ def _conditions(
     page: "Page",
     rows: Sequence[ConditionRun],
     compared: dict[str, verdicts.JudgedCondition],
-    spreads: dict[str, Distribution],
+    spreads: Spreads,
+    ranges: dict[str, Range],
 ) -> Table:
     at = _instant(rows).at
     columns: tuple[Column | str, ...] = (
@@ -240,17 +256,18 @@ def _conditions(
     found, kinds = [], []
     for row in rows:
         settled, other = row.settled, compared.get(row.condition)
-        spread = spreads.get(row.condition)
+        spread, own = spreads.get(row.condition), ranges.get(row.condition)
+        limited = own if at == EXIT else spread
         found.append(
             [
                 row.condition,
                 stated(page, row.condition),
-                *(_rates(settled, trust.uncertainty(other), spread) if settled else [None] * 3),
-                *(_at_exit(row) if _burns_on(rows) else []),
+                *(_rates(row, trust.uncertainty(other), spread, own) if settled else [None] * 3),
+                *(_at_exit(row, own) if _burns_on(rows) else []),
                 *([_hand(row)] if _by_hand(rows) else []),
-                settled and settled.direction_error_deg,
+                settled and _off_axis(row, own),
                 other and Measured(other.settled_rate_error_deg_s, other.floor_deg_s, apart=True),
-                *([_words(above(row, page.limits, at, spread))] if page.limits else []),
+                *([_words(above(row, page.limits, at, limited))] if page.limits else []),
                 other.verdict if other else row.status,
             ]
         )
@@ -258,21 +275,37 @@ def _conditions(
     notes = (
         _NOTE,
         *([_EXIT_NOTE] if _burns_on(rows) else []),
-        *([_RANGE_NOTE] if spreads else []),
+        *([_RANGE_NOTE] if spreads or ranges else []),
         *([_HAND_NOTE] if _by_hand(rows) else []),
     )
     return Table(columns, found, notes=notes, kinds=kinds, name="answer-table")
 
 
-def _rates(settled: Settled, uncertainty: float | None, spread: Distribution | None = None) -> list:
+def _rates(
+    row: ConditionRun, uncertainty: float | None, spread: Spread | None, own: Range | None
+) -> list:
+    """Settled v_x, roll and transverse rate; of a sensitive run the range, None where it has its own range at
+    the exit alone."""
+    assert row.settled is not None
+    speed, rate = row.settled.velocity_m_s[0], row.settled.rate_deg_s
+    if own is not None:
+        ends = own.low_m_s[0], own.high_m_s[0]
+        shown: list[Any] = [range_of(*ends, least=STEPS["m/s"]) if row.at == SETTLED else None]
+    else:
+        shown = [speed]
     if spread is not None:
-        ranges = (spread.within(measure) for measure in (roll, transverse))
-        return [settled.velocity_m_s[0], *(range_of(*ends) for ends in ranges)]
-    return [
-        settled.velocity_m_s[0],
-        uncertain(settled.rate_deg_s[0], uncertainty),
-        uncertain(transverse(settled.rate_deg_s), uncertainty),
-    ]
+        return [*shown, *(range_of(*spread.within(measure)) for measure in (roll, transverse))]
+    if own is not None:
+        return [*shown, None, None]
+    return [*shown, uncertain(roll(rate), uncertainty), uncertain(transverse(rate), uncertainty)]
+
+
+def _off_axis(row: ConditionRun, own: Range | None) -> Any:
+    """The settled direction of the velocity, as a range of a sensitive run."""
+    assert row.settled is not None
+    if own is None:
+        return row.settled.direction_error_deg
+    return range_of(*own.off_axis_deg, least=STEPS["deg"]) if row.at == SETTLED else None
 
 
 def _burns_on(rows: Sequence[ConditionRun]) -> bool:
@@ -280,10 +313,13 @@ def _burns_on(rows: Sequence[ConditionRun]) -> bool:
     return any((row.impulse_after_exit or 0.0) > _BURNT for row in rows)
 
 
-def _at_exit(row: ConditionRun) -> list:
+def _at_exit(row: ConditionRun, own: Range | None) -> list:
     """Roll and transverse rate at exit, and the share of the impulse after it."""
     rate = row.at_exit and row.at_exit.rate_deg_s
     shown = f"{uncertain(roll(rate))}, {uncertain(transverse(rate))}" if rate else None
+    if rate and own is not None:
+        ends = ", ".join(range_of(*own.within(measure)) for measure in (roll, transverse))
+        shown = ends if row.at == EXIT else None
     return [shown or row.no_exit_values or None, row.impulse_after_exit]
 
 

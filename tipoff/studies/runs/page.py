@@ -4,11 +4,13 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from tipoff.mechanics import instant
+from tipoff.results.model_error import Range
 from tipoff.studies.render.document import Figure, Part
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.runs import figures
 from tipoff.studies.runs.results import AtExit, ConditionRun, Settled
 from tipoff.studies.runs.thrust_facts import thrust_facts
+from tipoff.uncertain import LEAST, STEPS, range_of
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -21,28 +23,61 @@ _CURVES = (
 )
 
 
+_Cells = tuple[Column | str, Callable[[Any], Any]]
+RANGES = "A range in place of a value: the run is sensitive, and the range is that of runs within 1 µm of clearance."
+
+
 def settled(rows: Sequence[ConditionRun]) -> Table:
     """Velocity and rates of each condition for the terminal, at the instant that counts."""
     under = [row.rail_compliance["words"] for row in rows if row.rail_compliance]
     notes = tuple(dict.fromkeys(under))
+    if any(row.range for row in rows):
+        notes += (RANGES,)
     return Table.of_records(rows, *_SETTLED, notes=notes, kind=ConditionRun)
 
 
-def _of_taken(head: Column, cell: Callable[[Settled | AtExit], Any]) -> tuple[Column, Callable]:
-    return head, lambda row: row.taken and cell(row.taken)
+def _of_taken(
+    head: Column,
+    cell: Callable[[Settled | AtExit], Any],
+    ends: Callable[[Range], tuple[float, float]],
+    least: float = LEAST,
+) -> _Cells:
+    """A column of values at the instant that counts, or of the ranges of sensitive runs."""
+
+    def shown(row: ConditionRun) -> Any:
+        if row.range is not None:
+            return range_of(*ends(row.range), least=least)
+        return row.taken and cell(row.taken)
+
+    return head, shown
 
 
-_SETTLED = (
+def _about(axis: int) -> _Cells:
+    return _of_taken(
+        Column(f"rate {'xyz'[axis]}", "deg/s", "+.3f"),
+        lambda own: own.rate_deg_s[axis],
+        lambda found: (found.low_deg_s[axis], found.high_deg_s[axis]),
+    )
+
+
+_SETTLED: tuple[str | _Cells, ...] = (
     *("condition", "model", "status"),
     (Column("values"), lambda row: instant.where(row.at) if row.taken else None),
-    _of_taken(Column("v_x", "m/s", ".4f"), lambda own: own.velocity_m_s[0]),
-    _of_taken(Column("rate x", "deg/s", "+.3f"), lambda own: own.rate_deg_s[0]),
-    _of_taken(Column("rate y", "deg/s", "+.3f"), lambda own: own.rate_deg_s[1]),
-    _of_taken(Column("rate z", "deg/s", "+.3f"), lambda own: own.rate_deg_s[2]),
-    _of_taken(Column("off axis", "deg", ".3g"), lambda own: own.direction_error_deg),
+    _of_taken(
+        Column("v_x", "m/s", ".4f"),
+        lambda own: own.velocity_m_s[0],
+        lambda found: (found.low_m_s[0], found.high_m_s[0]),
+        STEPS["m/s"],
+    ),
+    *map(_about, range(3)),
+    _of_taken(
+        Column("off axis", "deg", ".3g"),
+        lambda own: own.direction_error_deg,
+        lambda found: found.off_axis_deg,
+    ),
     (
         Column("rate at exit x, y, z", "deg/s", "+.3f"),
-        lambda row: row.at_exit and row.at_exit.rate_deg_s,
+        lambda row: None if row.range else row.at_exit and row.at_exit.rate_deg_s,
     ),
     (Column("impulse after exit", "%", ".2g", 100.0), lambda row: row.impulse_after_exit),
     "wall_s",

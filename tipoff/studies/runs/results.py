@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from tipoff.mechanics import instant
 from tipoff.results.guides import Guide
+from tipoff.results.model_error import Range
 from tipoff.studies.render.column import Column
 
 Vector = tuple[float, float, float]  # along or about x, y, z
@@ -64,7 +65,8 @@ class ConditionRun:
     ``no_exit_values``; ``impulse_after_exit`` is a share, None without exit or thrust; ``advice``
     is empty unless the run ended too early; ``by_hand`` is None for the reason ``no_by_hand``;
     ``by_hand_at_exit``: of a rocket on two buttons;
-    ``guides``: its buttons, or pads; ``rail_compliance``: its statement about its elements;
+    ``guides``: its buttons, or pads; ``range``: over the neighbours of a sensitive run of the surrogate, whose
+    answer it is; ``rail_compliance``: its statement about its elements;
     ``trajectory``: the file in the folder of the scene. Only the reference has the fields from
     ``elements`` on; stresses are None for a run without stresses."""
 
@@ -96,6 +98,7 @@ class ConditionRun:
     no_by_hand: str = ""
     by_hand_at_exit: ByHand | None = None
     guides: tuple[Guide, ...] = ()
+    range: Range | None = None
     elements: int | None = None
     ns_per_element_step: float | None = None  # of all elements, those of rails at rest included
     ns_per_element_stepped: float | None = None  # None if all rails rest all the time

@@ -3,6 +3,7 @@ compliant contact."""
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from tipoff.results import guides, hand_calculation, unfinished
 from tipoff.results.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
 from tipoff.studies.runs.results import AtExit, ByHand, ConditionRun, Runs, Settled, Vector
+from tipoff.workspace import model_error
 from tipoff.workspace.run import Run
 from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import FAILED, Study
@@ -34,7 +36,12 @@ def run(study: Study, fidelity: str) -> Made[Runs]:
         found = fill(study, fidelity, requested)
         paths = {name: study.store.path(request) for name, request in requested.items()}
         rows = [
-            row(name, found[name], study.relative(paths[name]), request)
+            ranged(
+                study,
+                request,
+                found[name],
+                row(name, found[name], study.relative(paths[name]), request),
+            )
             for name, request in requested.items()
         ]
         failed = [
@@ -71,6 +78,15 @@ def failure(name: str, request: Run, found: Trajectory) -> list[str]:
         return []
     words = "; ".join(filter(None, [found.message, unfinished.advice(request.scene, found)]))
     return [f"{name}: {found.status}: {words}"]
+
+
+def ranged(study: Study, request: Run, found: Trajectory, own: ConditionRun) -> ConditionRun:
+    """The row ``own`` of the run ``found``, with the range over its neighbours if it is a sensitive run of the
+    surrogate."""
+    if request.fidelity != "lowfi":
+        return own
+    change = study.settings.clearance_change
+    return replace(own, range=model_error.range_of(study.store, request, found, change))
 
 
 def row(name: str, run: Trajectory, path: str, request: Run | None = None) -> ConditionRun:

@@ -153,7 +153,7 @@ def result_of(
         moved = disturbed.kept(study.store, request, found, study.settings.clearance_change)
         error = model_error.kept(study.store, request, found, moved)
     made = Single(
-        **vars(own),
+        **vars(own) | {"range": error and error.range},
         implausible=tuple(request.scene.warnings),
         agreement=agreement,
         disturbed=moved,
