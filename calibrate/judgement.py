@@ -162,7 +162,7 @@ class Bench:
         reasons = self.library.reasons(runs, objective.offsets, self.flight)
         for name, (misfit, kind, left) in reasons.items():
             if not self.flight and objective.parameters:
-                kind, left = rivals.likely(objective, name, kind)
+                kind, left = rivals.likely(objective, name, self.library.touch[name])
             other, there = rivals.condition(objective, runs, name, self.library.touch[name])
             if there <= min(NEAR * left, HALF * misfit):
                 kind, left = Kind(KINDS[0].turn, 1, f"these are the curves of {other}"), there

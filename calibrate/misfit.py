@@ -108,11 +108,17 @@ def misfits(wanted: Target, run: Trajectory, offset: float, touch: float) -> Mis
     if run.status != "exited":
         return Misfits(None, None)
     model = sampled(run, wanted.time - offset)[:, 1:]
-    flying = wanted.time - offset <= touch
-    return Misfits(*(_misfits(wanted, model, keep) for keep in (wanted.weights > 0.0, flying)))
+    return Misfits(*(of_rates(wanted, model, keep) for keep in segments(wanted, offset, touch)))
 
 
-def _misfits(wanted: Target, model: np.ndarray, keep: np.ndarray) -> np.ndarray | None:
+def segments(wanted: Target, offset: float, touch: float) -> tuple[np.ndarray, np.ndarray]:
+    """Samples (n,) of the whole curve, and of its free flight."""
+    return wanted.weights > 0.0, wanted.time - offset <= touch
+
+
+def of_rates(wanted: Target, model: np.ndarray, keep: np.ndarray) -> np.ndarray | None:
+    """Misfits (k,) of the samples ``keep`` (n,) from rates ``model`` (n,3); None without a signal
+    above the noise."""
     if keep.sum() < _FEWEST:
         return None
     weights, rate, model = wanted.weights[keep], wanted.rate[keep], model[keep]
