@@ -87,7 +87,7 @@ def undrawn(patch: pytest.MonkeyPatch, laid_out: bool = False) -> None:
     """Figures are made and not drawn; their files are empty. To draw one takes half a second. With
     ``laid_out``, a quarter of it, everything in them is placed, of which most faults are seen."""
 
-    def save(figure, stem):
+    def save(figure, stem, made):
         if laid_out:
             figure.draw_without_rendering()
         return [_touched(stem.with_name(f"{stem.name}.{kind}")) for kind in ("png", "svg")]

@@ -9,7 +9,7 @@ from PIL import Image
 
 import tipoff.studies
 from tipoff.studies.render import document
-from tipoff.studies.render.chart import save
+from tipoff.studies.render.chart import Picture, to_files
 from tipoff.studies.render.palette import DARK, NAVY, VERMILION, css, themed
 
 
@@ -51,7 +51,7 @@ def test_an_svg_has_properties_for_colours_and_its_own_ids(tmp_path):
     axes = figure.add_subplot()
     axes.plot([0.0, 1.0], [0.0, 1.0], color=NAVY)
     axes.plot([0.0, 1.0], [1.0, 0.0], color="#123456")
-    _, svg = save(figure, tmp_path / "lines")
+    _, svg = to_files(Picture("lines", figure), tmp_path)
     drawn = themed(svg.read_text(), "chart-lines", "two lines")
     assert drawn.startswith('<svg class="picture"') and "<metadata>" not in drawn
     assert "var(--c1d3461)" in drawn and NAVY not in drawn

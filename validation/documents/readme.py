@@ -77,7 +77,8 @@ def main(folder: Path) -> None:
     page = f"{_TITLE}\n\n{made_by}\n\n{section(folder)}\n\n{further.details(folder)}\n"
     write_text(_ROOT / "docs" / "results.md", page)
     if (cost := read(folder / "cost_study.json")) is not None:
-        chart.to_files(cost_page.picture(cost_study.STAGE.read(cost)), folder / "figures")
+        shown = cost_page.picture(cost_study.STAGE.read(cost))
+        chart.to_files(shown, folder / "figures", cost.get("state") or {})
     for name in ("figure6.png", "cost.png"):
         shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
     if (found := read(folder / "tails.json")) is not None:
@@ -103,7 +104,7 @@ def tails(document: dict, folder: Path) -> None:
     made_by = state.sentence({"tails": document})
     write_text(_ROOT / "docs" / "tails.md", f"{head}\n\n{made_by}\n\n{text}\n")
     for drawn in tails_page.figures(found):
-        (picture, *_) = chart.to_files(drawn.chart, folder / "figures")
+        (picture, *_) = chart.to_files(drawn.chart, folder / "figures", document.get("state") or {})
         shutil.copyfile(picture, _ROOT / "docs" / picture.name)
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tipoff.workspace import machine
 from validation.flights.compare import Flight
 
 _COLUMNS = ("no play", "springs", "pin")
@@ -66,5 +67,7 @@ def figure(found: Sequence[Flight], path: Path) -> None:
         axes[0][column].set_title(TITLES[own.launcher.name], fontsize=10)
         axes[2][column].set_xlabel("time from the start, ms")
     axes[0][0].legend(fontsize=8)
+    made = machine.stated(machine.state())
+    drawn.supxlabel(made, x=0.995, horizontalalignment="right", fontsize=7, color="grey")
     path.parent.mkdir(parents=True, exist_ok=True)
     drawn.savefig(path, dpi=110)

@@ -168,6 +168,7 @@ def figure(peers: list[dict], folder: Path) -> Path:
     """The diagram as a PNG file in ``folder``; its path."""
     from tipoff.studies.render import chart
 
-    png, svg = chart.to_files(picture(peers), folder)
+    made: dict = next((peer["state"] for peer in peers if peer.get("state")), {})
+    png, svg = chart.to_files(picture(peers), folder, made)
     svg.unlink()
     return png

@@ -28,6 +28,7 @@ from tipoff.studies.report.promises import promises
 from tipoff.studies.runs import figures
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.stage import row
+from tipoff.workspace import machine
 from tipoff.workspace.errors import StudyError
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
@@ -129,6 +130,10 @@ def test_a_chart_is_the_same_in_its_files_and_on_the_page(tmp_path):
     drawn = svg.read_bytes()
     assert png.read_bytes()[:4] == b"\x89PNG" and b"<svg" in drawn
     assert to_files(chart, tmp_path)[1].read_bytes() == drawn
+    made = machine.state()
+    assert machine.stated(made) in svg.read_text() and machine.stated(made) in shown
+    other = to_files(chart, tmp_path, made | {"commit": "0123456789ab"})[1].read_text()
+    assert "0123456789ab" in other and machine.stated(made) not in other
 
 
 def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path, figures):

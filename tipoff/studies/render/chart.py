@@ -14,6 +14,7 @@ import numpy as np
 
 from tipoff.files import replacing
 from tipoff.studies.render.palette import GREY, INK, NAVY, RULE
+from tipoff.workspace import machine
 
 _OFFSETS = {  # points
     "top center": (4, 6),
@@ -102,10 +103,11 @@ class Picture:
     figure: Any
 
 
-def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
-    """Draw a chart as a PNG and an SVG file with its name; returns their paths."""
+def to_files(chart: Chart | Picture, folder: Path, made: dict | None = None) -> list[Path]:
+    """Draw a chart as a PNG and an SVG file with its name; returns their paths. The state in which
+    its numbers were ``made`` (``machine.state``; default: the present one) stands below it."""
     if isinstance(chart, Picture):
-        return save(chart.figure, folder / chart.name)
+        return save(chart.figure, folder / chart.name, made)
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
@@ -157,13 +159,16 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
             frameon=False,
             fontsize=9,
         )
-    return save(figure, folder / chart.name)
+    return save(figure, folder / chart.name, made)
 
 
-def save(figure, stem: Path) -> list[Path]:
+def save(figure, stem: Path, made: dict | None) -> list[Path]:
     """Write a figure of matplotlib to ``stem``.png and ``stem``.svg, atomically and with the same
-    bytes every time; returns their paths."""
+    bytes every time in one state; returns their paths."""
     import matplotlib
+
+    said = machine.stated(machine.state() if made is None else made)
+    figure.supxlabel(said, x=0.995, horizontalalignment="right", fontsize=6.5, color=GREY)
 
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg")]
     with matplotlib.rc_context({"svg.hashsalt": stem.name, "svg.fonttype": "none"}):
