@@ -2,6 +2,7 @@
 or an edit."""
 
 import hashlib
+import io
 import json
 import tomllib
 from dataclasses import replace
@@ -103,23 +104,56 @@ def test_one_flipped_bit_anywhere_is_refused_or_changed_nothing(tmp_path, name):
     load(path)
 
 
+def archived(**arrays) -> bytes:
+    """Content of a file of numpy with arrays of other names."""
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)
+    return stream.getvalue()
+
+
+def one_array() -> bytes:
+    stream = io.BytesIO()
+    np.save(stream, np.zeros(3))
+    return stream.getvalue()
+
+
+def without_rates() -> bytes:
+    return random_trajectory().to_xarray().drop_vars("rate").to_netcdf(engine="h5netcdf")
+
+
+# what no file of the kind has as its content, and what each of them says
+OTHERS = {
+    "cut": lambda content: content[:-1],
+    "cut by more": lambda content: content[:-1000],
+    "longer": lambda content: content + b"\n",
+    "halved": lambda content: content[: len(content) // 2],
+    "a byte less": lambda content: content[:100] + content[101:],
+    "another header": lambda content: b"\0" * 64 + content[64:],
+    "text": lambda _: b"travel = 1\n",
+    "empty": lambda _: b"",
+    "a trajectory without rates": lambda _: bytes(without_rates()),
+    "other arrays": lambda _: archived(travel=np.zeros(3), stiffness=np.ones(3)),
+    "one array": lambda _: one_array(),
+    "a number": lambda _: b"constants = 3\n",
+    "no TOML": lambda _: b"objective = [",
+    "other keys": lambda _: b"colour = 1\ninformation = []\n",
+}
+SAYS = {
+    "trajectory.nc": "not a whole trajectory file",
+    "walls.npz": "not a file of rail compliance",
+    "calibration.toml": "not a calibration file|differs from its digest|no digest",
+}
+
+
 @pytest.mark.parametrize("name", KINDS)
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda content: content[:-1],
-        lambda content: content + b"\n",
-        lambda content: content[: len(content) // 2],
-        lambda content: content[:100] + content[101:],
-    ],
-    ids=["cut", "longer", "halved", "a byte less"],
-)
-def test_a_file_of_another_length_is_refused(tmp_path, name, change):
+@pytest.mark.parametrize("other", OTHERS)
+def test_a_file_of_other_content_is_refused(tmp_path, name, other):
     make, load, error = KINDS[name]
     make().save(tmp_path / name)
-    (tmp_path / name).write_bytes(change((tmp_path / name).read_bytes()))
-    with pytest.raises(error):
+    (tmp_path / name).write_bytes(OTHERS[other]((tmp_path / name).read_bytes()))
+    with pytest.raises(error, match=SAYS[name]) as fault:
         load(tmp_path / name)
+    assert str(tmp_path / name) in str(fault.value)
 
 
 def test_an_outcome_edited_by_another_program_is_refused(tmp_path):

@@ -110,22 +110,40 @@ def test_any_bit_of_any_file_is_found_and_repaired(whole, tmp_path, capsys, piec
             file.write_bytes(content)
 
 
+# of a list of failures, whose digest does not fit
+EDITS = [
+    lambda mark: mark["failures"].pop(),
+    lambda mark: mark["failures"][0].update(reason="none"),
+    lambda mark: mark.update(warnings={}),
+    lambda mark: mark.update(failed=0),
+    lambda mark: mark.update(digest="0" * 64),
+]
+# of its layout, with a digest that fits, as in a store of another version
+LAYOUTS = [
+    lambda mark: mark["failures"][0].pop("case"),
+    lambda mark: mark["failures"][0].update(case=3),
+    lambda mark: mark["failures"][0].update(case="ten"),
+    lambda mark: mark["failures"][0].update(reason=None),
+    lambda mark: mark.update(failures={"case": 10}),
+    lambda mark: mark.update(failures=None),
+    lambda mark: mark.pop("warnings"),
+    lambda mark: mark.update(warnings=["close"]),
+    lambda mark: mark.update(warnings={"ten": "close"}),
+]
+
+
 @pytest.mark.parametrize(
-    "change",
-    [
-        lambda mark: mark["failures"].pop(),
-        lambda mark: mark["failures"][0].update(reason="none"),
-        lambda mark: mark.update(warnings={}),
-        lambda mark: mark.update(failed=0),
-        lambda mark: mark.update(digest="0" * 64),
-    ],
+    ("change", "fits"), [(edit, False) for edit in EDITS] + [(layout, True) for layout in LAYOUTS]
 )
-def test_an_edited_list_of_failures_is_found(whole, capsys, change):
+def test_an_edited_list_of_failures_is_found(whole, capsys, change, fits):
+    """Control: the same list unchanged, with its digest."""
     path, expected = whole
     file = path / "done" / "000001.json"
     mark = json.loads(file.read_text())
+    file.write_text(json.dumps(with_digest(mark)))
+    assert state_of(opened(path)) == expected  # Control
     change(mark)
-    file.write_text(json.dumps(mark))
+    file.write_text(json.dumps(with_digest(mark) if fits else mark))
     store = opened(path)
     for ask in (store.failures, store.results, store.digest):
         with pytest.raises(
@@ -135,41 +153,27 @@ def test_an_edited_list_of_failures_is_found(whole, capsys, change):
             ask()
     assert not store.holds(12) and store.holds(3)
     assert fill(store) == [1] and state_of(store) == expected
-    assert (
-        f"{file} is damaged or was edited: the cases 8 to 15 are run again"
-        in capsys.readouterr().err
-    )
+    line = f"{file} is damaged or was edited: the cases 8 to 15 are run again"
+    assert line in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("number", [1, CASES // CHUNK])
 @pytest.mark.parametrize(
-    "change",
+    "harm",
     [
-        lambda mark: mark["failures"][0].pop("case"),
-        lambda mark: mark["failures"][0].update(case=3),
-        lambda mark: mark["failures"][0].update(case="ten"),
-        lambda mark: mark["failures"][0].update(reason=None),
-        lambda mark: mark.update(failures={"case": 10}),
-        lambda mark: mark.update(failures=None),
-        lambda mark: mark.pop("warnings"),
-        lambda mark: mark.update(warnings=["close"]),
-        lambda mark: mark.update(warnings={"ten": "close"}),
+        lambda path: path.unlink(),
+        lambda path: path.write_bytes(path.read_bytes()[:-40]),
+        lambda path: path.write_bytes(b"\0" + path.read_bytes()[1:]),
     ],
+    ids=["lost", "cut", "another header"],
 )
-def test_a_list_of_failures_of_another_layout_is_found(whole, capsys, change):
-    """Its digest fits, as in a store of another version. Control: the same mark unchanged."""
+def test_a_lost_or_cut_piece_of_an_array_is_run_again(whole, harm, number):
+    """A whole one, and the last, which is short."""
     path, expected = whole
-    file = path / "done" / "000001.json"
-    mark = json.loads(file.read_text())
-    file.write_text(json.dumps(with_digest(mark)))
-    assert state_of(opened(path)) == expected  # Control
-    change(mark)
-    file.write_text(json.dumps(with_digest(mark)))
+    (piece,) = (path / "cases.zarr" / "rate" / "c" / str(number)).glob("*")
+    harm(piece)
     store = opened(path)
-    for ask in (store.failures, store.results, store.digest):
-        with pytest.raises(StoreError, match="000001.json is damaged or was edited"):
-            ask()
-    assert fill(store) == [1] and state_of(store) == expected
-    assert "the cases 8 to 15 are run again" in capsys.readouterr().err
+    assert fill(store) == [number] and state_of(store) == expected
 
 
 def test_descriptions_are_written_again_only_for_whose_store_it_is(whole, capsys):

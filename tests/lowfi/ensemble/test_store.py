@@ -100,26 +100,6 @@ def test_progress_is_that_of_the_cases_done(tmp_path, monkeypatch):
     assert told[:4] == [5, 10, 15, CHUNK] and {CHUNK, 2 * CHUNK} <= set(told)
 
 
-@pytest.mark.parametrize(
-    "harm",
-    [
-        lambda path: path.unlink(),
-        lambda path: path.write_bytes(path.read_bytes()[:-40]),
-        lambda path: path.write_bytes(b"\0" + path.read_bytes()[1:]),
-    ],
-)
-@pytest.mark.parametrize("number", [1, CASES // CHUNK])
-def test_a_damaged_chunk_is_found_and_run_again(tmp_path, digest, harm, number):
-    asked = ensemble()
-    fill(asked, asked.store(tmp_path / "store"))
-    (piece,) = (tmp_path / "store" / "cases.zarr" / "rate" / "c" / str(number)).glob("*")
-    harm(piece)
-    store = asked.store(tmp_path / "store")
-    assert store.pending() == [number]
-    fill(asked, store)
-    assert store.digest() == digest
-
-
 def test_a_full_disk_is_reported_and_the_store_resumes(tmp_path, digest, monkeypatch):
     asked, real, left = ensemble(), cache.write_json, [2]
 
