@@ -139,8 +139,8 @@ def _(answer, drawing, message, mo, view):
     final = answer.run(*drawing.latest)
     drawing.shown = message.made(drawing.latest[0], final) | {"number": number, "is_final": True}
     if final.outcome.rate is not None:
-        changes = answer.disturbed(*drawing.latest, final)._asdict()
-        drawing.uncertainty = changes | {"number": number}
+        drawing.error = message.error(final) | {"number": number}
+    drawing.latest[0].plot()
     return
 
 

@@ -136,23 +136,16 @@ def test_an_ejection_that_does_not_settle_says_so(scene, compliance):
     assert said["status"] != "exited" and said["rate"] is None and said["exit_ms"] is None
 
 
-def test_disturbed_bounds_what_an_ensemble_finds(scene, compliance, run):
-    """``ensemble`` widens every clearance and has no run of a smaller one."""
-    found, modes = answer.disturbed(scene, compliance, run), run.numerics["modes"]
-    alike = {"modes": modes, "relative_tolerance": run.numerics["relative_tolerance"]}
-    cases = tipoff.ensemble(scene, [{}], compliance=compliance, sensitivity=True, **alike)
-    wider = np.degrees(cases.rate_change_by_clearance.values[0])
-    tighter = np.degrees(cases.rate_change_by_tolerance.values[0])
-    assert 0.0 < wider <= found.by_clearance * (1.0 + 1e-6)
-    assert found.by_tolerance == pytest.approx(tighter, rel=1e-6)
-    assert found.by_tolerance < found.by_clearance
-
-
-def test_small_changes_of_an_ejection_without_contact(scene):
+def test_the_page_has_the_error_of_the_run(scene, compliance, run):
+    """In its words, and the range of a sensitive run. Control: a free payload has an error and no range."""
+    found, said = run.error.range, message.error(run)
+    assert said["is_sensitive"] and f"the range is that of {found.runs} runs" in said["words"]
+    assert f"z {found.low_deg_s[2]:.3f} to {found.high_deg_s[2]:.3f} deg/s" in said["words"]
     free = scene.replace({"contact": "absent", "friction": "absent"})
     assert answer.compliance(free) is None
-    found = answer.disturbed(free, None, answer.run(free, None))
-    assert found.by_clearance == 0.0 and found.by_tolerance < 1e-6
+    own = answer.run(free, None)
+    assert message.error(own) == {"words": own.error.words, "is_sensitive": False}
+    assert own.error.rate_deg_s < 1e-6
 
 
 @pytest.mark.parametrize("name", ["tour.py", "what_if.py"])

@@ -209,6 +209,7 @@ def _end(scene: Any, make: Make = View) -> list[str]:
     view.arrow(at, (at[0], at[1] - reach - 34.0))
     view.text((at[0] + 12.0, at[1] - reach - 26.0), "Z")
     view.text((at[0] - 10.0, at[1] + 16.0), "X towards you")
+    _errors(view, scene, 0.9 * view.scale * min(b, c))
     first, second = math.radians(4.0), math.radians(56.0)
     view.arc(first, second, 0.72 * reach, "tilt")
     view.arc(math.radians(86.0), math.radians(34.0), 0.46 * reach, "shift")
@@ -220,6 +221,27 @@ def _end(scene: Any, make: Make = View) -> list[str]:
             view.text((left + (32.0 if not line else 0.0), y + 18.0 * line), words, "start")
     view.text((_EDGE, 20.0), "From the open end: clock angles", "start")
     return view.shapes
+
+
+def _errors(view: View, scene: Any, reach: float) -> None:
+    """The tilt of the thrust to its clock angle, and its line and the mass centre beside the axis: the larger
+    distance, or the tilt, is drawn ``reach`` (px) long."""
+    offset, shift = scene.thrust_offset, scene.mass_offset
+    points = {} if shift is None else {"mass centre": shift.eccentricity.offset()[1:]}
+    if offset is not None:
+        points["line of thrust"] = offset.eccentricity.offset()[1:]
+        tilt = offset.misalignment.direction()[1:]
+        if size := math.hypot(*tilt):
+            y, z = (reach * part / size for part in tilt)
+            view.arrow(view.at, (view.at[0] + y, view.at[1] - z), "thrust")
+    largest = max((math.hypot(*point) for point in points.values()), default=0.0)
+    for name, (y, z) in points.items():
+        if largest and (y or z):
+            scale = reach / largest
+            view.dot((view.at[0] + scale * y, view.at[1] - scale * z), name)
+    if largest:
+        words = f"errors enlarged: {1e3 * largest:.3g} mm off the axis at the farthest point"
+        view.text((view.at[0], HEIGHT - 8.0), words)
 
 
 _LEGEND = {

@@ -44,8 +44,16 @@ def answer(scene: Scene, run: Trajectory) -> dict:
         "rate": np.degrees(result.rate).tolist() if settled else None,
         "velocity": list(result.velocity) if settled else None,
         "off_axis": math.degrees(result.direction_error) if settled else None,
-        "limit": math.degrees(scene.agreement.settled_limit),
     }
+
+
+def error(run: Trajectory) -> dict:
+    """The error of the rates of a ``run``, or the range of a sensitive one, in the words of its summary."""
+    assert run.error is not None  # of a run with its sensitivity
+    found = run.error.range
+    spans = [] if found is None else zip("xyz", found.low_deg_s, found.high_deg_s)
+    ends = ", ".join(f"{axis} {low:.3f} to {high:.3f} deg/s" for axis, low, high in spans)
+    return {"words": f"{run.error.words}{ends and ': '}{ends}", "is_sensitive": found is not None}
 
 
 def rows(scene: Scene, run: Trajectory) -> np.ndarray:

@@ -20,11 +20,7 @@ const MARKUP = `<div class="body">
       <tr><th>velocity</th><td data-name="velocity-x"></td><td data-name="velocity-y"></td><td data-name="velocity-z"></td><td>m/s</td></tr>
     </tbody>
   </table>
-  <p data-name="uncertainty"></p>
-  <div class="errors">
-    <canvas class="section" role="img" aria-label="Errors across the axis, seen from the open end"></canvas>
-    <p>Seen from the open end. Ring: <span data-name="ring"></span>. <span class="thrust">Arrow: tilt of the thrust, <span data-name="arrow"></span> at the ring. Cross: its line.</span> <span class="mass">Dot: mass centre.</span></p>
-  </div>
+  <p data-name="error"></p>
   <button type="button" data-do="keep">Compare with this run</button>
 </div>
 <div class="charts">
@@ -37,7 +33,7 @@ const AXES = ["x", "y", "z"];
 const said = (value, digits) => (value === null ? "–" : value.toFixed(digits).replace(/^-(0\.0+)$/, "$1"));
 const signed = (value, digits) => (value < 0 ? "" : "+") + value.toFixed(digits);
 
-function write(root, { answer, loads, is_final }, kept) {
+function write(root, { answer, is_final }, kept) {
   const put = (name, text) => (root.querySelector(`[data-name="${name}"]`).textContent = text);
   const settled = answer.rate !== null;
   AXES.forEach((axis, i) => {
@@ -47,26 +43,14 @@ function write(root, { answer, loads, is_final }, kept) {
   });
   root.classList.toggle("comparing", Boolean(kept));
   root.classList.toggle("preliminary", !is_final);
-  const scales = sectionScales(loads);
-  put("ring", `${scales.ring} mm`);
-  put("arrow", `${scales.arrow} deg`);
   put("status", settled
     ? `Leaves the rails ${answer.exit_ms.toFixed(2)} ms after ignition, ${answer.off_axis.toFixed(3)} deg off the axis.`
     : `${answer.status}: no settled rates. ${answer.message}`);
 }
 
 // How far the rates can be trusted; ``found`` is empty until the sliders rest.
-function writeUncertainty(root, { answer, is_final }, found) {
-  const place = root.querySelector('[data-name="uncertainty"]');
-  place.classList.remove("sensitive");
-  if (answer.rate === null) return void (place.textContent = "");
-  if (!is_final) return void (place.textContent = "Rails without inertia, until the slider rests.");
-  if (!found) return void (place.textContent = "How far small changes move the rates is being found.");
-  const parts = [["1 µm of clearance", found.by_clearance], ["a tolerance of 1e-10", found.by_tolerance]].map(([cause, change]) =>
-    (change === null ? `${cause} prevents the run from settling` : `${cause} changes a rate by ±${change.toPrecision(2)} deg/s`));
-  const sensitive = [found.by_clearance, found.by_tolerance].some((change) => change === null || change > answer.limit);
-  place.classList.toggle("sensitive", sensitive);
-  place.textContent = `${parts.join("; ")}. ${sensitive
-    ? "Sensitive: use an ensemble in place of this single run."
-    : "The model itself is compared with finite elements in the report."}`;
+function writeError(root, { answer, is_final }, found) {
+  const place = root.querySelector('[data-name="error"]'), waits = is_final ? "The error is being found." : "Rails without inertia, until the slider rests.";
+  place.classList.toggle("sensitive", Boolean(found && found.is_sensitive));
+  place.textContent = answer.rate === null ? "" : is_final && found ? `Error of the rates: ${found.words}.` : waits;
 }

@@ -1,7 +1,7 @@
 // Receives runs, plays the newest one, and says which run the reader rests at.
 
 const SLOWER = 100; // times slower than the ejection
-const RESTS = 300; // ms without a new run, after which its uncertainty is asked for
+const RESTS = 300; // ms without a new run, after which its error is asked for
 const CHARTS = [
   { title: "rates", unit: "deg/s", columns: [7, 8, 9], names: AXES, colours: [0, 1, 2], factor: 1 },
   { title: "velocity along", unit: "m/s", columns: [10], names: ["x"], colours: [0], factor: 1 },
@@ -42,7 +42,6 @@ function render({ model, el }) {
     drawLauncher(find(".space"), camera, state.run, time, factor, look);
     if (state.stale || look !== state.look) {
       figures.forEach((figure, i) => drawChart(figure.firstChild, CHARTS[i], state.run, state.kept, look));
-      drawSection(find(".section"), state.run.loads, look);
       Object.assign(state, { stale: false, look });
     }
     figures.forEach((figure) => moveCursor(figure, state.run, state.kept, time));
@@ -74,8 +73,8 @@ function render({ model, el }) {
     }, RESTS);
   };
   const tell = () => {
-    const found = model.get("uncertainty");
-    if (state.run) writeUncertainty(root, state.run, found.number === state.run.number ? found : null);
+    const found = model.get("error");
+    if (state.run) writeError(root, state.run, found.number === state.run.number ? found : null);
   };
 
   find("[data-do=play]").onclick = () => pause(state.playing);
@@ -100,7 +99,7 @@ function render({ model, el }) {
   const resized = new ResizeObserver(renew);
   resized.observe(root);
   model.on("change:shown", show);
-  model.on("change:uncertainty", tell);
+  model.on("change:error", tell);
   pause(!state.playing);
   show();
   return () => {
@@ -108,7 +107,7 @@ function render({ model, el }) {
     cancelAnimationFrame(state.asked);
     clearTimeout(state.timer);
     model.off("change:shown", show);
-    model.off("change:uncertainty", tell);
+    model.off("change:error", tell);
   };
 }
 
