@@ -64,7 +64,7 @@ def _runs(found: Sweeps) -> list[Part]:
         )
     if found.held:
         lines.append(
-            "not swept, because they have no direction; each has the value of the scene: "
+            "not swept, and as in the scene in each case, because only offsets of thrust and mass are swept: "
             f"{halving.listed(found.held)}. tipoff ensemble --halve varies all errors together, and says what "
             "each one does"
         )
