@@ -89,6 +89,30 @@ def test_rates_of_another_unit_sign_or_axis_are_refused_with_the_cause(turn, wor
     assert "rates of phi15 differ from the model" in told
 
 
+def test_the_unit_is_named_where_rates_begin_with_contact():
+    """A payload that drifts to its walls does not turn before, and where it touches depends on the clearance.
+    So the scene's values and those of the fit explain the right curves no better than the wrong ones: the
+    points of the search between them do. Control: the right unit is fitted."""
+    drifting = {"thrust_offset": "absent", "initial.velocity.y": 0.1, "initial.velocity.z": 0.03}
+    exact, asked = {}, tiny().replace(drifting)
+    for name in CONDITIONS:
+        own = asked.replace({CLEARANCE: TRUE}).condition(name)
+        run = lowfi.run(own, compliance=compliance(), numerics=lowfi.Numerics(modes=0))
+        exact[name] = noisy(Curves.from_trajectory(run), 0.02, np.random.default_rng(5))
+
+    def fit(references):
+        return calibration.run(
+            asked, references, plan=LOCAL, compliance=compliance(), fit=[CLEARANCE]
+        )
+
+    assert fit(exact).values == pytest.approx([TRUE], rel=0.05)
+    with pytest.raises(calibration.CalibrationError) as refused:
+        fit({name: turned(item, TURN * np.eye(3)) for name, item in exact.items()})
+    assert str(refused.value).count("Likely cause: values in deg/s with the unit rad/s") == 2, str(
+        refused.value
+    )
+
+
 @pytest.mark.parametrize("turn", [TURN * np.eye(3), np.diag([1.0, 1.0, -1.0])])
 def test_the_one_wrong_curve_is_named(turn):
     told = refusal(curves() | {"phi60": turned(curves()["phi60"], turn)})
