@@ -80,6 +80,22 @@ def test_a_t_slot_has_the_moments_of_its_parts_and_the_area_of_its_bore():
     assert found.area - bored.area == pytest.approx(math.pi * 0.0034**2, rel=1e-12)
 
 
+def test_a_rod_bends_as_its_circle():
+    """An octagon with the second moment of the circle. Control: the octagon around the circle has 11.5 % more,
+    the one within it 17 % less."""
+    radius = 0.5 * SHAPES["rod"]["diameter"]
+    found, corners = shape(**SHAPES["rod"]).moments(), shape(**SHAPES["rod"]).loops[0]
+    exact = 0.25 * math.pi * radius**4
+    assert (found.yy, found.zz, found.yz) == pytest.approx((exact, exact, 0.0), rel=1e-12)
+    assert found.area / (math.pi * radius**2) - 1.0 == pytest.approx(-0.00114, abs=1e-5)
+    away, far = max(y for y, _ in corners), max(math.hypot(*corner) for corner in corners)
+    assert (away / radius, far / radius) == pytest.approx((0.9731, 1.0533), abs=1e-4)
+    # Control:
+    for scale, off in ((radius / away, 0.115), (radius / far, -0.188)):
+        other = outline([[(scale * y, scale * z) for y, z in corners]]).moments()
+        assert other.yy / exact - 1.0 == pytest.approx(off, abs=1e-3)
+
+
 def test_loops_may_have_any_order_and_direction():
     first = outline([SQUARE, HOLE])
     assert outline([HOLE[::-1], SQUARE[::-1]]).moments() == pytest.approx(first.moments())

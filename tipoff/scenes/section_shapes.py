@@ -10,6 +10,7 @@ from tipoff.scenes.table import Table, is_absent
 from tipoff.scenes.units import Dimension
 
 _BORE_SIDES = 12
+_ROD_SIDES = 8
 
 
 class _ShapeTable(Table):
@@ -79,11 +80,7 @@ class TSlotTable(_ShapeTable):
         middle += [[(0.0, 0.0), (foot, 0.0), (foot, foot), (0.0, foot)]]
         found = [*middle, *(each for each in (lip, beside, under, web, core))]
         found += [[(z, y) for y, z in each[::-1]] for each in (lip, beside, under, web, core)]
-        every = []
-        for _ in range(4):
-            every += found
-            found = [[(-z, y) for y, z in each] for each in found]
-        return tuple(map(tuple, every))
+        return _turned(found)
 
     def loops(self) -> list[list[Corner]]:
         half, cavity, floor = 0.5 * self.width, 0.5 * self.cavity, 0.5 * self.width - self.depth
@@ -197,6 +194,67 @@ class HollowTable(_ShapeTable):
         return [_rectangle(y, z), _rectangle(y - wall, z - wall)]
 
 
+class RodTable(_ShapeTable):
+    """``shape = "rod"``: a round rod, drawn as an octagon with its second moment.
+
+    With the radius R of the rod, the middles of the sides are 2.7 % of R inside the circle and the corners
+    5.3 % outside. The area is 0.11 % smaller. Four sides face along Y and Z.
+    """
+
+    #: Round rod, drawn as an octagon with the same second moment.
+    shape: Literal["rod"]
+    #: Diameter of the rod.
+    diameter: Dimension
+
+    def blocks(self) -> tuple[Loop, ...]:
+        away, half = rod_side(self.diameter)
+        # shares of ``away``, those within by trial for the best shapes
+        middle, near, far, side = (0.0, 0.0), (0.3, 0.0), (0.7, 0.0), (1.0, 0.0)
+        beside, inner, outer = (0.58, 0.25), (0.27, 0.27), (0.51, 0.51)
+        corner, slant = (1.0, half / away), (0.5 + 0.5 * half / away,) * 2
+        eighth: list[Loop] = [
+            (near, far, beside, inner),
+            (far, side, corner, beside),
+            (beside, corner, slant, outer),
+        ]
+        found: list[Loop] = [
+            (middle, near, inner, near[::-1]),
+            (inner, beside, outer, beside[::-1]),
+        ]
+        found += eighth
+        found += [tuple((z, y) for y, z in each[::-1]) for each in eighth]
+        return _turned([[(away * y, away * z) for y, z in each] for each in found])
+
+    def loops(self) -> list[list[Corner]]:
+        away, half = rod_side(self.diameter)
+        found, side = [], [(away, -half), (away, half)]
+        for _ in range(4):
+            found += side
+            side = [(-z, y) for y, z in side]
+        return [found]
+
+
+def _turned(blocks: list[list[Corner]]) -> tuple[Loop, ...]:
+    """The ``blocks`` of a quadrant, and their copies in the other three."""
+    every: list[list[Corner]] = []
+    for _ in range(4):
+        every += blocks
+        blocks = [[(-z, y) for y, z in each] for each in blocks]
+    return tuple(map(tuple, every))
+
+
+def rod_side(diameter: float) -> tuple[float, float]:
+    """Distance (m) of the sides of a rod of this ``diameter`` (m) from its middle, and half of their width.
+
+    A regular polygon of n sides at the distance a has the second moment n a^4 / 4 (t + t^3 / 3),
+    t = tan(pi / n), and the circle pi r^4 / 4.
+    """
+    slope = math.tan(math.pi / _ROD_SIDES)
+    share = math.pi / (_ROD_SIDES * (slope + slope**3 / 3.0))
+    away = 0.5 * diameter * share**0.25
+    return away, away * slope
+
+
 def _halves(*lengths: float) -> tuple[float, ...]:
     return tuple(0.5 * length for length in lengths)
 
@@ -205,5 +263,7 @@ def _rectangle(y: float, z: float) -> list[Corner]:
     return [(y, z), (-y, z), (-y, -z), (y, -z)]
 
 
-ShapeTable = Annotated[TSlotTable | TeeTable | ChannelTable | HollowTable, Discriminator("shape")]
-SHAPES = ("t_slot", "tee", "channel", "box")
+ShapeTable = Annotated[
+    TSlotTable | RodTable | TeeTable | ChannelTable | HollowTable, Discriminator("shape")
+]
+SHAPES = ("t_slot", "rod", "tee", "channel", "box")
