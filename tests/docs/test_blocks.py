@@ -103,7 +103,7 @@ def test_every_toml_block_is_a_scene_or_a_file_of_distributions(page, tmp_path):
             file.write_text(head + text)
             uncertainty.load(file, scene)
             continue
-        whole = "extends" in table or "deployer" in table
+        whole = bool({"extends", "deployer", "lugs"} & set(table))
         head = "" if whole else 'extends = "reference"\n'
         head += "" if "name" in table else f'name = "block{number}"\n'
         file.write_text(head + text)

@@ -48,7 +48,7 @@ def rates(rate_deg_s: Sequence[float]) -> str:
 
 def of_guide(guide: Guide, with_rates: bool) -> str:
     """When a guide leaves the rail, ``with_rates`` or without those then, and its largest force."""
-    told = [f"x = {1e3 * guide.place_m[0]:.4g} mm"]
+    told = [f"x = {round(1e3 * guide.place_m[0], 6):.4g} mm"]
     if guide.leaves_s is None or guide.speed_m_s is None or guide.rate_rad_s is None:
         told.append("does not leave the rail")
     else:

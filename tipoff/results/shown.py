@@ -95,7 +95,7 @@ def _beside(run: "Trajectory") -> dict[str, str]:
             rates = answer.rates(list(map(math.degrees, hand.rate_rad_s)))
             found["by hand"] = f"{rates}: {hand.words}"
     for guide in guides.of_run(scene, run):
-        if guide.name.startswith("button"):
+        if not guide.name.startswith("pad"):
             found[guide.name] = answer.of_guide(guide, not _is_one_of_many(run))
     if words := unfinished.advice(scene, run):
         found["advice"] = words

@@ -1,4 +1,4 @@
-"""Guides of a payload on its rail: a button, which is the pads of one foot, or a pad without a foot."""
+"""Guides of a payload on its rail: a button or a lug, which is the pads of one foot, or a pad without a foot."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from tipoff.scenes.tables import PadTable
 class Guide(NamedTuple):
     """One guide."""
 
-    name: str  # "button 1", "pad 3"
+    name: str  # "button 1", "lug 2", "pad 3"
     pads: tuple[int, ...]  # indices of its pads
     foot: tuple[float, float, float] | None  # m, from the nominal mass centre; None for a pad
 
@@ -19,13 +19,20 @@ def from_pads(pads: Sequence[PadTable]) -> list[Guide]:
     found: dict[tuple, list[int]] = {}
     for index, pad in enumerate(pads):
         found.setdefault((index,) if pad.foot is None else pad.foot, []).append(index)
-    guides, buttons = [], 0
+    guides, parts = [], 0
     for members in found.values():
         foot = pads[members[0]].foot
-        buttons += foot is not None
-        name = f"pad {members[0] + 1}" if foot is None else f"button {buttons}"
+        parts += foot is not None
+        kind = "lug" if foot and _encloses([pads[index] for index in members], foot) else "button"
+        name = f"pad {members[0] + 1}" if foot is None else f"{kind} {parts}"
         guides.append(Guide(name, tuple(members), foot))
     return guides
+
+
+def _encloses(pads: Sequence[PadTable], foot: tuple[float, float, float]) -> bool:
+    """Whether faces along Y look inwards: around a rod, and not from inside of a slot."""
+    inward = [pad.position[1] - foot[1] for pad in pads if pad.normals == ("-y",)]
+    return bool(inward) and min(inward) > 0.0
 
 
 def numbers(pads: Sequence[PadTable]) -> list[int]:

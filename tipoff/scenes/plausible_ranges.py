@@ -71,7 +71,10 @@ def _values(scene, key: str) -> Iterator[float]:
 
 
 def _of_clearance(scene) -> list[str]:
-    """Clearances that are large relative to a pad; the larger one of both axes is taken."""
+    """Clearances that are large relative to a pad; the larger one of both axes is taken. The play of lugs
+    follows from two diameters, and its own rule refuses a large one (``scenes.parts.lugs``)."""
+    if scene.lugs is not None:
+        return []
     widest = max(scene.contact.gaps()[1:])
     most = CLEARANCE * min(min(pad.length, pad.width) for pad in scene.pads)
     if at_most(widest, most):

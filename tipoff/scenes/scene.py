@@ -55,6 +55,7 @@ from tipoff.scenes.parts import expansion
 from tipoff.scenes.parts.body import Origin
 from tipoff.scenes.parts.buttons import ButtonTable
 from tipoff.scenes.parts.deployer import DeployerTable
+from tipoff.scenes.parts.lugs import LugTable
 from tipoff.scenes.rail import RailTable
 from tipoff.scenes.studies import StudiesTable
 from tipoff.scenes.table import MOST, Table, at_least_one, is_absent, limited
@@ -80,13 +81,15 @@ class Scene(inputs.Inputs, shown.Shown, launch.Timed, Table):
     description: str = ""
     #: Longest time that is simulated. Without it a run ends when it is settled or jammed.
     duration: Duration | None = None
-    #: Point from which the places of buttons, pads, mass centre, rail and mounts are counted: the
+    #: Point from which the places of buttons, lugs, pads, mass centre, rail and mounts are counted: the
     #: tail (forwards) or the nose (backwards) of the payload; its mass centre where absent.
     origin: Origin | None = Field(None, exclude=True)
     #: The rigid body that leaves the rail.
     payload: PayloadTable
     #: Rail buttons in the slot of a T-slot rail, in place of pads.
     buttons: Annotated[tuple[ButtonTable, ...], limited] | None = Field(None, exclude=True)
+    #: Launch lugs on a round rod, in place of pads.
+    lugs: Annotated[tuple[LugTable, ...], limited] | None = Field(None, exclude=True)
     #: A CubeSat in its deployer, in place of pads, rail and what else follows from its form.
     deployer: DeployerTable | None = Field(None, exclude=True)
     #: The blocks on the payload that slide along the rail.

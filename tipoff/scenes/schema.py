@@ -46,7 +46,7 @@ def schema() -> dict:
         for name, field in Scene.model_fields.items()
         if field.is_required() and name not in ("name", "pads")  # without a name, that of the file
     ]
-    whole = [{"required": [*required, pads]} for pads in ("pads", "buttons")]
+    whole = [{"required": [*required, pads]} for pads in ("pads", "buttons", "lugs")]
     whole.append({"required": [*(name for name in required if name != "rail"), "deployer"]})
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",

@@ -1,9 +1,9 @@
 """The small tables of every scene: payload, pads, output, agreement."""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AfterValidator, Field, ValidationInfo, field_validator
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo, field_validator
 
 from tipoff.mechanics.run_limits import MOST_SAMPLES
 from tipoff.scenes.body import InertiaTensor
@@ -20,7 +20,20 @@ from tipoff.scenes.units import (
 )
 
 _Names = Annotated[tuple[str, ...], limited]
-Normal = Literal["+y", "-y", "+z", "-z"]
+
+
+def _along_an_axis(normal: Any) -> Any:
+    """A triangle of three walls with the play c each is 3 c to 3.5 c wide, four walls 2 c."""
+    if isinstance(normal, str) and normal not in get_args(_AXIAL):
+        raise ValueError(
+            "'+y', '-y', '+z' or '-z': walls face along Y or Z; for a tower of three rods at 120 deg take "
+            "four walls at 90 deg, once with its play and once with 1.7 of it"
+        )
+    return normal
+
+
+_AXIAL = Literal["+y", "-y", "+z", "-z"]
+Normal = Annotated[_AXIAL, BeforeValidator(_along_an_axis)]
 
 
 class BoxTable(Table):
@@ -53,7 +66,7 @@ class PayloadTable(Table):
     #: Length of a body of which only this, diameter and mass are known: its size and, where absent,
     #: its inertia follow.
     length: PositiveLength | None = Field(None, exclude=True)
-    #: Diameter of such a body. A rail with buttons lies below it.
+    #: Diameter of such a body. A rail with buttons or lugs lies below it.
     diameter: PositiveLength | None = Field(None, exclude=True)
     #: Place of the mass centre, from the origin of the scene.
     mass_centre: NonNegativeLength | None = Field(None, exclude=True)
@@ -80,7 +93,7 @@ class PadTable(Table):
     #: Crown: how far the edges of a face lie behind its middle.
     relief: NonNegativeLength = 0.0
     #: Where the part that carries the face is fixed to the payload, from the nominal mass centre. Pads of
-    #: one foot are one button: its largest force is that of all of them, and has a moment about the foot.
+    #: one foot are one button or lug: its largest force is that of all of them, and has a moment about the foot.
     foot: tuple[Length, Length, Length] | None = Field(None, exclude_if=is_absent)
 
     @field_validator("normals")

@@ -23,6 +23,7 @@ from tipoff.scenes.table import Table
 _TABLES = {
     "payload",
     "buttons",
+    "lugs",
     "deployer",
     "pads",
     "rail",

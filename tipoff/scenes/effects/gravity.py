@@ -20,7 +20,7 @@ class GravityTable(Table):
     #: Acceleration along Z.
     z: Acceleration = 0.0
     #: Angle of a rail under its payload above the horizontal plane, in place of x and z: those of
-    #: 9.80665 m/s2.
+    #: 9.80665 m/s2. A payload with lugs hangs below its rod.
     inclination: Inclination | None = Field(None, exclude=True)
 
     def body_force(self) -> BodyForce:

@@ -61,7 +61,7 @@ def standing(scene: Mapping[str, Any]) -> Standing:
     stated = scene.get("gravity", {})
     gravity = np.array([stated.get(axis, 0.0) for axis in "xyz"])
     if (angle := stated.get("inclination")) is not None:
-        gravity += body.gravity(angle)
+        gravity += body.gravity(scene, angle)
     size, assumed = float(np.linalg.norm(gravity)), []
     up = -gravity / size if size > 0.0 else None
     inclination = table.get("inclination")

@@ -1,7 +1,7 @@
 """The body of a payload in the words of its owner: places counted from its tail or its nose, inertia from
 length and diameter, and a rail at an angle to the ground.
 
-With ``origin`` the places of buttons, pads, mass centre, rail and mounts are counted from the tail
+With ``origin`` the places of buttons, lugs, pads, mass centre, rail and mounts are counted from the tail
 (forwards) or from the nose (backwards). X of a place p with the mass centre at c is::
 
     X = p - c  (tail)          X = c - p  (nose)
@@ -12,6 +12,7 @@ A body of which only mass m, length L and diameter 2 r are known is a slender ho
 """
 
 import math
+from collections.abc import Mapping
 from typing import Any, Literal
 
 from tipoff.scenes.parts.made import Made, number, text
@@ -42,10 +43,12 @@ def expand(made: Made) -> None:
     _places(made)
 
 
-def gravity(inclination: float) -> tuple[float, float, float]:
-    """Acceleration (m/s2) in scene axes on a rail below its payload, at this angle (rad) above the
-    horizontal plane."""
-    return -GRAVITY * math.sin(inclination), 0.0, -GRAVITY * math.cos(inclination)
+def gravity(raw: Mapping, inclination: float) -> tuple[float, float, float]:
+    """Acceleration (m/s2) in scene axes on a rail at this angle (rad) above the horizontal plane, in a scene as
+    written: the rail is below its payload, but a payload with lugs hangs below its rod, on which
+    nothing holds the roll."""
+    side = 1.0 if raw.get("lugs") else -1.0
+    return -GRAVITY * math.sin(inclination), 0.0, side * GRAVITY * math.cos(inclination)
 
 
 def radius(made: Made) -> float | None:
@@ -56,7 +59,7 @@ def radius(made: Made) -> float | None:
         height = made.length(size[2])
         return None if height is None else 0.5 * height
     if "diameter" not in payload:
-        made.refuse("payload.diameter", "nothing", "the diameter of a body with buttons")
+        made.refuse("payload.diameter", "nothing", "the diameter of a body with buttons or lugs")
     return None
 
 
@@ -96,7 +99,7 @@ def _gravity(made: Made) -> None:
         made.refuse(f"gravity.{axis}", repr(own[axis]), "no such key beside inclination")
     angle = number(own["inclination"], "rad", made.bare)
     if angle is not None and not stated:
-        for axis, value in zip("xyz", gravity(angle)):
+        for axis, value in zip("xyz", gravity(made.raw, angle)):
             if axis != "y":
                 made.put(f"gravity.{axis}", f"{value!r} m/s**2", "")
 
@@ -125,7 +128,7 @@ def _places(made: Made) -> None:
     for end in ("start", "end"):
         if end in rail:
             made.put(f"rail.{end}", along(rail[end]), "")
-    for name, key in (("pads", "position"), ("buttons", "place")):
+    for name, key in (("pads", "position"), ("buttons", "place"), ("lugs", "place")):
         items = made.tables.get(name)
         for item in items if isinstance(items, list) else ():
             if isinstance(item, dict) and key in item:

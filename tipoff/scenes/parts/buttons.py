@@ -10,22 +10,37 @@ of the neck and d of head and flange, and the height h of the neck, the play on 
 
     neck to slot  (s - d_n) / 2          head to lip  (h - t) / 2
 
-Edges are rounded: a face ends ``EDGE`` before its part does.
+Edges are rounded: a face ends ``EDGE`` before its part does. A shoe is a long button: it has these six
+faces at each of its ends.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from pydantic import Field
+from pydantic import Field, TypeAdapter
 
-from tipoff.scenes.parts.made import text
-from tipoff.scenes.parts.profiles import PROFILES, MaterialName, ProfileName
+from tipoff.scenes.parts import body, guided, usual
+from tipoff.scenes.parts.made import Made, text
+from tipoff.scenes.parts.profiles import (
+    PROFILES,
+    RAIL_MATERIAL,
+    RAIL_SOURCE,
+    MaterialName,
+    ProfileName,
+)
 from tipoff.scenes.table import Table, is_absent
 from tipoff.scenes.units import Length, NonNegativeLength, PositiveLength
 
 EDGE = 0.25e-3  # m
 _PLAY, _FLANGE_HEIGHT, _LENGTH, _RELIEF = 0.25e-3, 3e-3, 8e-3, 20e-6  # m
 _MISSING = "a quantity in m, or a profile"
+_SECTION = ("width", "slot", "lip", "cavity", "depth", "web")
+# what a further button takes from the first one, if it states none of them
+_GROUPS = (
+    ("neck_to_slot", "neck"),
+    ("head_to_lip", "neck_height"),
+    *((name,) for name in ("profile", "head", "flange", "flange_height", "length", "relief")),
+)
 
 
 class ButtonTable(Table):
@@ -53,10 +68,13 @@ class ButtonTable(Table):
     neck_to_slot: NonNegativeLength | None = Field(None, exclude_if=is_absent)
     #: Play of the centred head, and of the flange, to the lips, in place of neck_height.
     head_to_lip: NonNegativeLength | None = Field(None, exclude_if=is_absent)
-    #: Length of its faces along the rail.
+    #: Length along the rail: that of its faces, or of a shoe, which has faces at both of its ends.
     length: PositiveLength | None = Field(None, exclude_if=is_absent)
     #: Crown of its faces.
     relief: NonNegativeLength | None = Field(None, exclude_if=is_absent)
+
+
+_TABLES: TypeAdapter = TypeAdapter(tuple[ButtonTable, ...])
 
 
 class Slot(NamedTuple):
@@ -82,36 +100,89 @@ class Button(NamedTuple):
     relief: float
 
 
-_Faults = list[tuple[str, str, str]]
+def expand(made: Made) -> None:
+    """Pads, rail, play and contact of the buttons of a scene."""
+    if not (found := guided.tables(made, "buttons", _TABLES)):
+        return
+    slot, radius = _slot(made, found[0]), body.radius(made)
+    if slot is None or radius is None:
+        return
+    sized_, faults = sized(found, slot)
+    made.faults.extend(faults)
+    if faults:
+        return
+    words = assumed(found)
+    source = f"assumed: {words}" if words else "from the buttons and the section of the rail"
+    _placed(made, sized_, slot, radius, source)
+    first = sized_[0]
+    play = {"clearance": text(first.neck_to_slot)}
+    if first.head_to_lip != first.neck_to_slot:
+        play["clearance_z"] = text(first.head_to_lip)
+    guided.slides(made, play, found[0].material, source, "buttons")
 
 
-def sized(tables: Sequence[ButtonTable], slot: Slot) -> tuple[list[Button], _Faults]:
+def _slot(made: Made, first: ButtonTable) -> Slot | None:
+    """The slot of the rail; its section is that of the profile of the ``first`` button where it has
+    none."""
+    rail = made.tables.get("rail")
+    if not isinstance(rail, dict):
+        return None
+    if first.profile is not None and not any(name in rail for name in guided.FILES):
+        profile = PROFILES[first.profile]
+        of_profile = {name: text(getattr(profile, name)) for name in _SECTION}
+        made.put("rail.section", {"shape": "t_slot"} | of_profile, profile.source)
+    section = rail.get("section")
+    if not isinstance(section, dict) or section.get("shape") != "t_slot":
+        expected = 'a table with shape = "t_slot", or a profile'
+        made.refuse("rail.section", guided.kind(section), expected)
+        return None
+    width, slot, lip, cavity = (
+        made.length(section.get(name)) for name in ("width", "slot", "lip", "cavity")
+    )
+    if width is None or slot is None or lip is None or cavity is None:
+        return None  # the scene refuses them
+    return Slot(width, slot, lip, cavity)
+
+
+def _placed(made: Made, sized: list[Button], slot: Slot, radius: float, source: str) -> None:
+    """Place of the profile, and the pads on it, whose dimensions have a ``source``."""
+    first, rail = sized[0], made.tables["rail"]
+    edge = 0.5 * slot.width
+    missing = {
+        "at": [text(each) for each in at(first, radius, slot)],
+        "mounted": [[text(sign * 0.6 * edge), text(-edge)] for sign in (1, -1)],
+        "clearance": text(first.neck_to_slot),
+        "leg": text(0.5 * (slot.cavity - slot.opening)),
+        "thickness": text(slot.lip),
+        "stretch": usual.STRETCH,
+    }
+    made.put_absent("rail", missing, source)
+    if "material" not in rail:
+        made.put("rail.material", dict(RAIL_MATERIAL), RAIL_SOURCE)
+    if (found := guided.place(rail, made)) is not None:
+        y, z, gap = found
+        made.put("pads", [pad for each in sized for pad in pads(each, (y, z), slot, gap)], source)
+
+
+def sized(tables: Sequence[ButtonTable], slot: Slot) -> tuple[list[Button], guided.Faults]:
     """The buttons in a ``slot``, and the faults (key, given, expected) of those that do not fit."""
     found: list[Button] = []
-    faults: _Faults = []
+    faults: guided.Faults = []
     for number, table in enumerate(tables):
         key = f"buttons.{number}"
-        own = {name: getattr(table, name) for name in ButtonTable.model_fields}
-        given = _with_first(own, tables[0] if number else None)
+        given = guided.with_first(table, tables[0], _GROUPS)
         faults += [
-            (f"{key}.{play}", f"{own[play]:g} m", f"no such key beside {instead}")
-            for play, instead in (("neck_to_slot", "neck"), ("head_to_lip", "neck_height"))
-            if own[play] is not None and own[instead] is not None
+            (f"{key}.{play}", f"{getattr(table, play):g} m", f"no such key beside {instead}")
+            for play, instead in _GROUPS[:2]
+            if getattr(table, play) is not None and getattr(table, instead) is not None
         ]
         button = _button(given, slot)
         found.append(button)
         faults += [
             (f"{key}.{name}", was, words) for name, was, words in _misfits(button, given, slot)
         ]
-        faults += [
-            (
-                f"{key}.{play}",
-                f"{getattr(button, play):g} m",
-                f"{getattr(found[0], play):g} m, that of the first button: one rail holds all",
-            )
-            for play in ("neck_to_slot", "head_to_lip", "flange_height")
-            if abs(getattr(button, play) - getattr(found[0], play)) > 1e-9
-        ]
+        names = ("neck_to_slot", "head_to_lip", "flange_height")
+        faults += guided.unequal(key, button, found[0], names)
     return found, faults
 
 
@@ -124,27 +195,15 @@ def assumed(tables: Sequence[ButtonTable]) -> str:
     return f"{', '.join(found)} of a usual button" if found else ""
 
 
-def _with_first(own: Mapping, first: ButtonTable | None) -> dict:
-    """The keys of a button, with those of the ``first`` one where it states neither of two."""
-    if first is None:
-        return dict(own)
-    found = dict(own)
-    for names in (("neck", "neck_to_slot"), ("neck_height", "head_to_lip")):
-        if all(own[name] is None for name in names):
-            found |= {name: getattr(first, name) for name in names}
-    rest = ("profile", "head", "flange", "flange_height", "length", "relief")
-    return found | {name: getattr(first, name) if own[name] is None else own[name] for name in rest}
-
-
 def _button(given: Mapping, slot: Slot) -> Button:
-    usual = PROFILES[given["profile"]].head if given["profile"] else None
+    of_profile = PROFILES[given["profile"]].head if given["profile"] else None
     side, height = given["neck_to_slot"], given["head_to_lip"]
     if side is None:
         side = _PLAY if given["neck"] is None else round(0.5 * (slot.opening - given["neck"]), 12)
     if height is None:
         own = given["neck_height"]
         height = _PLAY if own is None else round(0.5 * (own - slot.lip), 12)
-    head = given["head"] or given["flange"] or usual or 0.0
+    head = given["head"] or given["flange"] or of_profile or 0.0
     return Button(
         place=given["place"],
         neck=slot.opening - 2.0 * side,
@@ -158,8 +217,8 @@ def _button(given: Mapping, slot: Slot) -> Button:
     )
 
 
-def _or(value: float | None, usual: float) -> float:
-    return usual if value is None else value
+def _or(value: float | None, other: float) -> float:
+    return other if value is None else value
 
 
 def _misfits(button: Button, given: Mapping, slot: Slot) -> Iterator[tuple[str, str, str]]:
@@ -192,8 +251,8 @@ def at(button: Button, radius: float, slot: Slot) -> tuple[float, float]:
 
 
 def pads(button: Button, place: tuple[float, float], slot: Slot, gap: float) -> list[dict]:
-    """The six faces of a centred ``button`` as ``[[pads]]`` with lengths in m, on a profile whose
-    middle is at ``place`` (m); each is ``gap`` (m) off its wall."""
+    """The faces of a centred ``button`` as ``[[pads]]`` with lengths in m, on a profile whose middle is at
+    ``place`` (m); each is ``gap`` (m) off its wall."""
     y, outside = place[0], place[1] + 0.5 * slot.width
     half = 0.5 * slot.opening
     inside, across = outside - slot.lip, half - gap
@@ -206,13 +265,14 @@ def pads(button: Button, place: tuple[float, float], slot: Slot, gap: float) -> 
     foot = [text(button.place), text(y), text(outside + button.head_to_lip + button.flange_height)]
     return [
         {
-            "position": [text(button.place), text(y + sign * aside), text(z)],
+            "position": [text(along), text(y + sign * aside), text(z)],
             "foot": foot,
             "normals": [normal if normal[1:] else f"{'+' if sign > 0 else '-'}y"],
-            "length": f"{button.length!r} m",
+            "length": f"{length!r} m",
             "width": text(width),
             "relief": f"{button.relief!r} m",
         }
+        for along, length in guided.bands(button.place, button.length, _LENGTH)
         for aside, z, normal, width in rows
         for sign in (1, -1)
     ]

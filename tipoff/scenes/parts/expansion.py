@@ -7,23 +7,16 @@ place of a button changes pads, rail and inertia too. What a scene states itself
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from pydantic import TypeAdapter, ValidationError
-
 from tipoff.scenes import overrides as keys
 from tipoff.scenes import provenance
-from tipoff.scenes.parts import body, buttons, deployer
-from tipoff.scenes.parts.made import Made, number, text
-from tipoff.scenes.parts.profiles import (
-    FRICTION,
-    MATERIALS,
-    PROFILES,
-    RAIL_MATERIAL,
-    RAIL_SOURCE,
-)
+from tipoff.scenes.parts import body, buttons, deployer, lugs
+from tipoff.scenes.parts.made import Made, number
 
-_BUTTONS: TypeAdapter = TypeAdapter(tuple[buttons.ButtonTable, ...])
-_FILES = ("mesh", "geometry", "section")
-_WITH_PADS = ("buttons", "deployer")  # parts that give pads
+_WITH_PADS = {  # parts that give pads
+    "buttons": buttons.expand,
+    "lugs": lugs.expand,
+    "deployer": deployer.expand,
+}
 _OWN = (*_WITH_PADS, "origin")  # parts that are tables or keys of the scene itself
 
 
@@ -73,13 +66,11 @@ def expand(raw: dict, bare: bool) -> Expansion:
     tables = keys.plain(raw)
     made = Made(tables, raw, bare, {}, [])
     body.expand(made)
-    if "buttons" in raw:
-        _of_buttons(made)
-    if "deployer" in raw:
-        if "buttons" in raw:
-            made.refuse("deployer", "a table", "none beside buttons")
-        else:
-            deployer.expand(made)
+    first, *others = [*(name for name in _WITH_PADS if name in raw), ""]
+    if first:
+        _WITH_PADS[first](made)
+    for name in filter(None, others):
+        made.refuse(name, "a table", f"none beside {first}")
     stated = tables.get("provenance")
     if isinstance(stated, Mapping):
         tables["provenance"] = _with_sources(stated, made.derived)
@@ -141,101 +132,3 @@ def _with_sources(stated: Mapping, derived: Mapping[str, str]) -> dict:
         if text and provenance.nearest(texts, key) is None
     }
     return own | texts
-
-
-def _of_buttons(made: Made) -> None:
-    if "pads" in made.raw:
-        made.refuse("pads", "a table", "none beside buttons, which are pads; or no buttons")
-        return
-    made.derived["pads"] = ""
-    try:
-        found = _BUTTONS.validate_python(
-            made.tables["buttons"], context={"bare_numbers_are_si": made.bare}
-        )
-    except ValidationError:  # the scene has the same faults
-        return
-    if not found:
-        made.refuse("buttons", "none", "at least one of them")
-        return
-    slot = _slot(made, found[0])
-    radius = body.radius(made)
-    if slot is None or radius is None:
-        return
-    sized, faults = buttons.sized(found, slot)
-    made.faults.extend(faults)
-    if faults:
-        return
-    usual = buttons.assumed(found)
-    source = f"assumed: {usual}" if usual else "from the buttons and the section of the rail"
-    _placed(made, sized, slot, radius, source)
-    first = sized[0]
-    play = {"clearance": text(first.neck_to_slot)}
-    if first.head_to_lip != first.neck_to_slot:
-        play["clearance_z"] = text(first.head_to_lip)
-    contact = made.tables.get("contact")
-    if isinstance(contact, dict) and "clearance" not in contact:
-        made.put_absent("contact", play, source)
-    if (name := found[0].material) is not None:
-        made.put_absent("contact", MATERIALS[name], f"assumed: buttons of {name}")
-    friction = made.tables.get("friction")
-    if isinstance(friction, dict) and friction.get("law", "two-step") == "two-step":
-        made.put_absent("friction", FRICTION, "assumed")
-
-
-def _slot(made: Made, first: buttons.ButtonTable) -> buttons.Slot | None:
-    """The slot of the rail; its section is that of the profile of the ``first`` button where it has
-    none."""
-    rail = made.tables.get("rail")
-    if not isinstance(rail, dict):
-        return None
-    if first.profile is not None and not any(name in rail for name in _FILES):
-        profile = PROFILES[first.profile]
-        of_profile = {name: text(getattr(profile, name)) for name in _TABLE}
-        made.put("rail.section", {"shape": "t_slot"} | of_profile, profile.source)
-    section = rail.get("section")
-    if not isinstance(section, dict) or section.get("shape") != "t_slot":
-        made.refuse("rail.section", kind(section), 'a table with shape = "t_slot", or a profile')
-        return None
-    width, slot, lip, cavity = (
-        made.length(section.get(name)) for name in ("width", "slot", "lip", "cavity")
-    )
-    if width is None or slot is None or lip is None or cavity is None:
-        return None  # the scene refuses them
-    return buttons.Slot(width, slot, lip, cavity)
-
-
-_TABLE = ("width", "slot", "lip", "cavity", "depth", "web")
-
-
-def kind(section: Any) -> str:
-    """What a section is, for a message."""
-    return repr(section) if isinstance(section, str) else "no such section"
-
-
-def _placed(
-    made: Made, sized: list[buttons.Button], slot: buttons.Slot, radius: float, source: str
-) -> None:
-    """Place of the profile, and the pads on it, whose dimensions have a ``source``."""
-    first, rail = sized[0], made.tables["rail"]
-    edge = 0.5 * slot.width
-    missing = {
-        "at": [text(each) for each in buttons.at(first, radius, slot)],
-        "mounted": [[text(sign * 0.6 * edge), text(-edge)] for sign in (1, -1)],
-        "clearance": text(first.neck_to_slot),
-        "leg": text(0.5 * (slot.cavity - slot.opening)),
-        "thickness": text(slot.lip),
-        "stretch": 3,
-    }
-    made.put_absent("rail", missing, source)
-    if "material" not in rail:
-        made.put("rail.material", dict(RAIL_MATERIAL), RAIL_SOURCE)
-    y, z = (made.length(each) for each in (*_two(rail["at"]),))
-    gap = made.length(rail["clearance"])
-    if y is None or z is None or gap is None:
-        return  # the scene refuses them
-    pads = [pad for each in sized for pad in buttons.pads(each, (y, z), slot, gap)]
-    made.put("pads", pads, source)
-
-
-def _two(place: Any) -> tuple[Any, Any]:
-    return (place[0], place[1]) if isinstance(place, list) and len(place) == 2 else (None, None)

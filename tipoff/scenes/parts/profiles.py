@@ -1,4 +1,4 @@
-"""Profiles with a T-slot and materials of buttons, by the names that shops use."""
+"""Profiles with a T-slot, and materials of buttons, lugs and rods, by the names that shops use."""
 
 from typing import Literal, NamedTuple, get_args
 
@@ -62,6 +62,13 @@ RAIL_MATERIAL = {
     "yield_strength": "195 MPa",
 }
 RAIL_SOURCE = "assumed: EN AW-6060, technical data of profiles"
+ROD_MATERIAL = {
+    "density": "7900 kg/m**3",
+    "youngs_modulus": "200 GPa",
+    "poisson_ratio": 0.3,
+    "yield_strength": "190 MPa",
+}
+ROD_SOURCE = "assumed: stainless steel 1.4301, values of EN 10088"
 # law of the springs between a plastic layer and the lip, as on the scene rocket_rail
 CONTACT = {
     "law": "impact",

@@ -158,13 +158,13 @@ def _error(error: ModelError | None) -> str:
 
 
 def _guides(row: Single, every: bool) -> list[str]:
-    """A line for each button; for each pad only with ``every``, and so the rates of a sensitive run, whose
+    """A line for each button or lug; for each pad only with ``every``, and so the rates of a sensitive run, whose
     answer is a range."""
     is_one_of_many = row.error is not None and row.error.range is not None
     return [
         f"  {guide.name:<14}{answer.of_guide(guide, every or not is_one_of_many)}"
         for guide in row.guides
-        if guide.name.startswith("button") or every
+        if every or not guide.name.startswith("pad")
     ]
 
 
