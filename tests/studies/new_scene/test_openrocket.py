@@ -12,6 +12,7 @@ from tipoff import scenes
 from tipoff.formats.designs.openrocket import read_openrocket
 from tipoff.formats.designs.openrocket_table import read_simulation
 from tipoff.scenes import uncertainty
+from tipoff.scenes.parts import usual
 from tipoff.studies.cli import app
 
 # made up: a nose of 0.5 m, a tube of 1.5 m; buttons 0.1 and 0.9 m in front of the tail
@@ -71,7 +72,7 @@ def test_every_value_of_a_design_is_in_the_scene_with_its_field(packed, tmp_path
     assert vary["gravity.inclination"].ppf(0.5) == pytest.approx(math.radians(84.0))
 
 
-def test_places_by_every_method_and_the_ends_of_a_lug():
+def test_places_by_every_method():
     def guides(offset, kind="railbutton"):
         text = DESIGN.replace('<axialoffset method="bottom">-0.1</axialoffset>', offset)
         return read_openrocket(text.replace("railbutton", kind).encode()).guides
@@ -79,10 +80,29 @@ def test_places_by_every_method_and_the_ends_of_a_lug():
     assert guides('<axialoffset method="top">1.4</axialoffset>') == pytest.approx((1.1, 1.9))
     assert guides('<position type="middle">0.65</position>') == pytest.approx((1.1, 1.9))
     assert guides('<axialoffset method="absolute">1.9</axialoffset>') == pytest.approx((1.1, 1.9))
-    lug = '<axialoffset method="top">1.0</axialoffset><length>0.2</length>'
+
+
+def test_a_lug_is_a_lug_on_a_usual_rod_that_fits(tmp_path, monkeypatch):
+    """Inner diameter 2 (4.5 - 0.5) mm; the rod is the largest fraction of an inch within it, or has a play of 8 %."""
+    monkeypatch.chdir(tmp_path)
+    sizes = "<radius>0.0045</radius><thickness>0.0005</thickness><length>0.2</length>"
+    lug = f'<axialoffset method="top">1.0</axialoffset>{sizes}'
     one = DESIGN.replace("<instancecount>2", "<instancecount>1").replace("railbutton", "launchlug")
     text = one.replace('<axialoffset method="bottom">-0.1</axialoffset>', lug)
-    assert read_openrocket(text.encode()).guides == pytest.approx((1.5, 1.7))
+    design = read_openrocket(text.encode())
+    assert design.guides == pytest.approx((1.6,)) and design.lug == pytest.approx((8e-3, 0.2))
+    (tmp_path / "design.ork").write_text(text)
+    made = call("new", "mine.toml", "--rocket", "design.ork")
+    assert made.exit_code == 0, made.output
+    scene = scenes.load("mine.toml")
+    assert scene.rail.section.diameter == pytest.approx(0.92 * 8e-3)
+    assert scene.contact.gaps()[1] == pytest.approx(0.5 * 0.08 * 8e-3)
+    middles = {pad.position[0] for pad in scene.pads}
+    assert sorted(middles) == pytest.approx([0.4 - 0.8 - 0.098, 0.4 - 0.8 + 0.098])
+    assert scenes.provenance.nearest(scene.provenance, "lugs").endswith("thickness, length")
+    assert usual.rod_in(6.6e-3) == pytest.approx(6.35e-3)
+    with pytest.raises(ValueError, match="launch lug with radius"):
+        read_openrocket(text.replace("<thickness>0.0005</thickness>", "").encode())
 
 
 @pytest.mark.parametrize(
@@ -98,7 +118,7 @@ def test_places_by_every_method_and_the_ends_of_a_lug():
             "nose cone.*two rail buttons.*stored data.*launchrodlength.*launchrodangle",
         ),
         (DESIGN.replace("Mass,", "Weight,").encode(), "run it in OpenRocket and save"),
-        (DESIGN.replace("railbutton", "fin").encode(), "two rail buttons or a launch lug$"),
+        (DESIGN.replace("railbutton", "fin").encode(), "two rail buttons or a launch lug with"),
     ],
 )
 def test_a_design_that_cannot_be_used_is_refused_with_all_that_is_missing(data, words):

@@ -283,6 +283,25 @@ def test_a_rocket_has_the_given_numbers_and_the_motor_of_the_catalogue_beside_it
     )
 
 
+def test_a_rocket_on_a_rod_has_lugs(tmp_path, monkeypatch):
+    """In 30 lines or fewer. Its play is that of the option, and the rod is held at its foot alone."""
+    monkeypatch.chdir(tmp_path)
+    asked = ("--rod", "12.7 mm", "--clearance", "0.3 mm", "--rail-length", "1.2 m")
+    made = call("new", "own.toml", "--rocket", *asked)
+    assert made.exit_code == 0, made.output
+    text = (tmp_path / "own.toml").read_text()
+    assert len(text.splitlines()) <= 30 and text.count("[[lugs]]") == 2 and "hangs" in text
+    scene = scenes.load("own.toml")
+    assert scene.contact.gaps() == pytest.approx(3 * [0.3e-3])
+    assert scene.rail.section.diameter == pytest.approx(12.7e-3) and len(scene.rail.mounts) == 1
+    assert scene.gravity.z > 0.0
+    assert provenance.nearest(scene.provenance, "rail.section") == "given to tipoff new"
+    assert uncertainty.of_scene(scene).vary["payload.mass"].ppf(0.5) == pytest.approx(5.0)
+    for options, words in (([], "--rocket beside it"), (["--deployer", "3u"], "none beside --")):
+        made = call("new", "other.toml", *options, "--rod", "6 mm")
+        assert made.exit_code == 2 and words in made.stderr
+
+
 @pytest.mark.parametrize("mass, rail", [("24 kg", "11 m"), ("35 kg", "3.9 m")])
 def test_a_stranger_has_an_answer_without_editing_pads(mass, rail, tmp_path, monkeypatch):
     """Buttons, mass centre and angle are lines of the file. The speed is that of the motion along the rail, but for the

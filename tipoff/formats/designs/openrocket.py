@@ -22,13 +22,21 @@ _OUTSIDE = ("nosecone", "bodytube", "transition")
 _STATE = {key: name for key, (name, _) in COLUMNS.items()}
 
 
+class Lug(NamedTuple):
+    """A launch lug (m)."""
+
+    inner: float  # diameter
+    length: float
+
+
 class Design(NamedTuple):
     """What a design says, in SI and degrees; ``sources`` names the field of each value."""
 
     length: float
     diameter: float
-    guides: tuple[float, ...]  # places of buttons, or of the ends of one lug
+    guides: tuple[float, ...]  # places of the middles of buttons, or of lugs where there are none
     neck: float | None  # diameter of the neck of the buttons
+    lug: Lug | None  # the first of the lugs
     mass: float
     mass_centre: float
     across: float  # kg m2
@@ -53,9 +61,10 @@ def read_openrocket(
     radii = [radius for part, _, _ in outside for radius in _radii(part)]
     if outside and not radii:
         missing.append("a radius of the body")
-    guides, neck, words = _guides(outside)
-    if len(guides) < 2:
-        missing.append("two rail buttons or a launch lug")
+    guides, guide, words = _guides(outside)
+    neck, lug = (None, guide) if isinstance(guide, Lug) else (guide, None)
+    if len(guides) < (1 if lug else 2):
+        missing.append("two rail buttons or a launch lug with radius, thickness and length")
     stored, conditions, simulation = _simulation(root, file)
     state = simulated or stored
     if state is None:
@@ -72,6 +81,7 @@ def read_openrocket(
         diameter=2.0 * max(radii),
         guides=guides,
         neck=neck,
+        lug=lug,
         mass=state.mass,
         mass_centre=state.mass_centre,
         across=state.across,
@@ -82,7 +92,7 @@ def read_openrocket(
         sources={
             "payload.length": f"{file}: nosecone, bodytube, transition: length",
             "payload.diameter": f"{file}: nosecone, bodytube, transition: radius",
-            "buttons": f"{file}: {words}",
+            "lugs" if lug else "buttons": f"{file}: {words}",
             "rail.end": f"{file}: simulation {simulation!r}, launchrodlength",
             "gravity.inclination": f"{file}: simulation {simulation!r}, launchrodangle",
         }
@@ -146,24 +156,33 @@ def _radii(part: ElementTree.Element) -> list[float]:
     return [radius for radius in found if radius is not None]
 
 
-def _guides(outside: list) -> tuple[tuple[float, ...], float | None, str]:
-    """Places of the buttons, or of the lugs where there are none, the neck of a button, and the field."""
+def _guides(outside: list) -> tuple[tuple[float, ...], Lug | float | None, str]:
+    """Places of the buttons, or of the lugs where there are none, the first lug or the neck of a button, and the
+    field."""
     buttons: list[float] = []
-    lugs: list[tuple[float, float]] = []
-    neck = None
+    lugs: list[float] = []
+    neck = lug = None
     for part, front, length in outside:
         for item in part.iter():
+            places = (place for place, _ in _places(item, front, length))
             if item.tag == "railbutton":
-                buttons += [place for place, _ in _places(item, front, length)]
+                buttons += places
                 neck = neck or _number(item, "innerdiameter")
-            elif item.tag == "launchlug":
-                lugs += _places(item, front, length)
+            elif item.tag == "launchlug" and (own := _lug(item)):
+                lugs += places
+                lug = lug or own
     if buttons:
         return tuple(sorted(buttons)), neck, "railbutton: axialoffset, instanceseparation"
-    if len(lugs) == 1:
-        (place, own), *_ = lugs
-        return (place - 0.5 * own, place + 0.5 * own), None, "launchlug: its ends, as buttons"
-    return tuple(sorted(place for place, _ in lugs)), None, "launchlug: axialoffset, as buttons"
+    return tuple(sorted(lugs)), lug, "launchlug: axialoffset, radius, thickness, length"
+
+
+def _lug(item: ElementTree.Element) -> Lug | None:
+    """The sizes of a lug; None if one is missing."""
+    radius, thickness, length = (_number(item, name) for name in ("radius", "thickness", "length"))
+    if radius is None or thickness is None or length is None:
+        return None
+    inner = 2.0 * (radius - thickness)
+    return Lug(inner, length) if inner > 0.0 and length > 0.0 else None
 
 
 def _places(item: ElementTree.Element, front: float, whole: float) -> list[tuple[float, float]]:

@@ -22,6 +22,7 @@ _ASKED = {
     "thrust": ("N", "Peak of the thrust", "6 kN"),
     "burn_time": ("s", "Time in which the thrust rises and falls", "24 ms"),
 }
+_ROD = ("m", "Diameter of a launch rod", "6.35 mm")
 
 
 def _option(name: str) -> typer.models.OptionInfo:
@@ -85,6 +86,13 @@ def new(
             "motor.",
         ),
     ] = False,
+    rod: Annotated[
+        str | None,
+        typer.Option(
+            metavar="QUANTITY",
+            help="With --rocket: lugs on a round rod of this diameter, in place of buttons.",
+        ),
+    ] = None,
     json_: Json = False,
 ) -> None:
     """Write a commented scene of your own launcher from a few numbers; it runs as it is.
@@ -95,6 +103,7 @@ def new(
       tipoff new my_launcher.toml --mass "12 kg" --thrust "4 kN"
       tipoff new my_deployer.toml --deployer 3u --mass "4.5 kg"
       tipoff new my_rocket.toml --rocket --mass "6 kg"
+      tipoff new my_rocket.toml --rocket --rod "6.35 mm"
       tipoff new my_rocket.toml --rocket design.ork
       tipoff new my_rocket.toml --rocket design.ork simulation.csv
       tipoff new measured.toml --thrust-curve firing.csv
@@ -111,7 +120,7 @@ def new(
         "burn_time": burn_time,
     }
     kind = deployer or ("rocket" if rocket else None)
-    nothing = all(value is None for value in (*given.values(), thrust_curve, pads, kind))
+    nothing = all(value is None for value in (*given.values(), thrust_curve, pads, kind, rod))
     if nothing and sys.stdin.isatty():
         given = {
             name: typer.prompt(question, default=default)
@@ -129,14 +138,21 @@ def new(
             lambda: _require_new(file),
             lambda: (
                 _of_design(
-                    file, design, [*given.values(), thrust_curve, pads], rocket and not deployer
+                    file,
+                    design,
+                    [*given.values(), thrust_curve, pads, rod],
+                    rocket and not deployer,
                 )
                 if design
                 else _from_catalogue(
-                    file, kind, given, thrust_curve, {"pads": pads, "rocket": both or None}
+                    file,
+                    kind,
+                    given | {"rod": rod},
+                    thrust_curve,
+                    {"pads": pads, "rocket": both or None},
                 )
                 if kind
-                else template.text(file.stem, _numbers(given, thrust_curve, pads), file.parent)
+                else template.text(file.stem, _numbers(given, thrust_curve, pads, rod), file.parent)
             ),
         )
         _require_scene(text, file)
@@ -165,7 +181,11 @@ def _from_catalogue(
         option: number
         for option in beside
         if option in like.quantities
-        and (number := quantity(_option_name(option), given[option], *_ASKED[option][::2]))
+        and (
+            number := quantity(
+                _option_name(option), given[option], *(_ASKED | {"rod": _ROD})[option][::2]
+            )
+        )
         is not None
     }
     is_rocket = kind == "rocket"
@@ -301,7 +321,9 @@ def _length_and_diameter(text: str) -> tuple[float, float]:
     return sides[0], sides[1]
 
 
-def _numbers(given: dict[str, str | None], thrust_curve: Path | None, pads: int | None):
+def _numbers(
+    given: dict[str, str | None], thrust_curve: Path | None, pads: int | None, rod: str | None
+):
     """The numbers of the new scene in SI. Raises SceneError, every fault listed."""
     from tipoff.faults import Fault, SceneError, together
     from tipoff.studies.new_scene.template import Numbers
@@ -318,10 +340,11 @@ def _numbers(given: dict[str, str | None], thrust_curve: Path | None, pads: int 
             raise SceneError([Fault(option, "value", text, expected)])
         return tuple(sides)
 
-    *found, _, _ = together(
+    *found, _, _, _ = together(
         *((lambda name=name: read(name)) for name in _ASKED),
         lambda: _require_curve(thrust_curve, given),
         lambda: _require_pads(pads),
+        lambda: _require_rocket(rod),
     )
     numbers = Numbers(*found)._replace(thrust_curve=thrust_curve)
     return numbers if pads is None else numbers._replace(pads=pads)
@@ -351,3 +374,11 @@ def _require_pads(pads: int | None) -> None:
 
     if pads is not None and (faults := template.pads_faults(pads)):
         raise SceneError(faults)
+
+
+def _require_rocket(rod: str | None) -> None:
+    """Raise SceneError for a rod without a rocket."""
+    from tipoff.faults import Fault, SceneError
+
+    if rod is not None:
+        raise SceneError([Fault("--rod", "option", rod, "--rocket beside it")])

@@ -59,6 +59,7 @@ KINDS = {
             "mass": _MASS,
             "clearance": _CLEARANCE,
             "rail_length": Quantity(("rail.end",), "m", 1.0),
+            "rod": Quantity(("rail.section.diameter",), "mm", 1e-3),
         },
         takes_curve=True,
     ),

@@ -19,13 +19,13 @@ _CENTRE, _REAR = 0.46875, 0.0625  # of the length, as on the scene rocket_rail
 _INCLINATION, _ERROR = 85.0, 0.5  # deg
 
 _TEXT = """\
-# A rocket with two rail buttons. Places count from its tail: write yours. provenance says what is given and assumed.
+# A rocket with {guided}. Places count from its tail: write yours. provenance says what is given and assumed.
 format = {format}
 name = {named}  # "tipoff scenes --show {name}.toml" writes out pads, profile, inertia and all else that follows
 origin = "tail"
 gravity = {{ inclination = "{inclination:g} deg" }}  # of the rail
-initial = {{ settled = true }}  # the rocket lies on the rail
-contact = {{ law = "impact" }}  # the rest follows from the material of the buttons
+initial = {{ settled = true }}  # the rocket {rests}
+contact = {{ law = "impact" }}  # the rest follows from the material of the {part}
 friction = {{ static = 0.2, dynamic = 0.2 }}
 thrust_offset = {{ misalignment = {{ axial = "0.1 deg", radial = "0 deg" }} }}
 thrust = {{ kind = "measured", {curve}, reaction = "exhaust" }}  # the nozzle is at the tail, or state its arm
@@ -37,16 +37,23 @@ mass = "{mass:.6g} kg"
 length = "{length:.6g} m"
 diameter = "{diameter:.6g} mm"
 mass_centre = "{centre:.6g} m"{inertia}
-[[buttons]]
+[[{part}]]
 place = "{rear:.6g} m"
-profile = "{profile}"  # or 1010, 1515; or neck, neck_height, head and flange of your button
-material = "acetal"  # or nylon, aluminium{play}
+{first}
 {front}
 [rail]
 start = "0 m"
 end = "{rail:.6g} m"
-mounts = [{mounts}]
+mounts = [{mounts}]{section}
 """
+_BUTTON = """\
+profile = "{profile}"  # or 1010, 1515; or neck, neck_height, head and flange of your button
+material = "acetal"  # or nylon, aluminium{play}"""
+_LUG = """\
+inner_diameter = "{inner:.6g} mm"
+length = "{length:.6g} mm"
+material = "nylon"  # or acetal, aluminium"""
+_PLAY, _LUG_LENGTH = 0.25e-3, 30e-3  # m
 
 
 def text(
@@ -59,10 +66,14 @@ def text(
     (m), and the keys of the ``[thrust]`` of a curve."""
     length, diameter = size or (1.6, 0.08)
     rail = given.get("rail_length", 2.0)
-    play = ""
-    if "clearance" in given:
-        each = f'"{1e3 * given["clearance"]:.6g} mm"'
-        play = f"\nneck_to_slot = {each}\nhead_to_lip = {each}"
+    play = given.get("clearance", _PLAY)
+    if "rod" in given:
+        rod = given["rod"]
+        guided = _on_rod(rod, rod + 2.0 * play, _LUG_LENGTH)
+    else:
+        each = f'"{1e3 * play:.6g} mm"'
+        stated = f"\nneck_to_slot = {each}\nhead_to_lip = {each}" if "clearance" in given else ""
+        guided = _in_slot("4040 slot 8", stated, rail)
     curve = thrust_curve or {"file": "j360_start.csv"}
     centre, rear = _CENTRE * length, _REAR * length
     return _TEXT.format(
@@ -72,19 +83,16 @@ def text(
         inclination=_INCLINATION,
         curve=", ".join(f"{key} = {tomlkit.item(own).as_string()}" for key, own in curve.items()),
         errors=tomlkit.item(from_catalogue.errors_file(name)).as_string(),
-        element=usual.element_size(rail),
         sources=_sources(given, size, thrust_curve),
         mass=given.get("mass", 5.0),
         length=length,
         diameter=1e3 * diameter,
         centre=centre,
         rear=rear,
-        front=_button(centre),
+        front=_further(guided["part"], centre),
         inertia="",
-        profile="4040 slot 8",
-        play=play,
         rail=rail,
-        mounts=_mounts(rail),
+        **guided,
     )
 
 
@@ -94,12 +102,16 @@ def of_design(name: str, design: Design, curve: str) -> str:
     rear, *others = sorted(design.length - place for place in design.guides)
     moments = {"xx": design.along, "yy": design.across, "zz": design.across}
     inertia = ", ".join(f'{axis} = "{value:.6g} kg*m**2"' for axis, value in moments.items())
-    sources = {"buttons": "assumed: the profile", "rail": "assumed", "thrust_offset": "assumed"}
-    sources |= dict.fromkeys(("contact", "friction"), "assumed: acetal on aluminium")
+    if design.lug is None:
+        small = design.neck is None or design.neck < PROFILES["1010"].slot
+        guided = _in_slot("1010" if small else "1515", "", design.rail_length)
+    else:
+        guided = _on_rod(usual.rod_in(design.lug.inner), *design.lug)
+    sources = {"buttons": "assumed: the profile"} if design.lug is None else {}
+    sources |= {"rail": "assumed", "thrust_offset": "assumed"} | _materials(guided["part"])
     sources |= design.sources
     sources |= dict.fromkeys(("payload.size",), sources["payload.length"])
     sources["thrust.arm"] = "assumed: the nozzle at the tail"
-    small = design.neck is None or design.neck < PROFILES["1010"].slot
     return _TEXT.format(
         format=FORMAT,
         name=name,
@@ -107,7 +119,6 @@ def of_design(name: str, design: Design, curve: str) -> str:
         inclination=90.0 - design.rail_angle,
         curve=f"file = {tomlkit.item(curve).as_string()}",
         errors=tomlkit.item(from_catalogue.errors_file(name)).as_string(),
-        element=usual.element_size(design.rail_length),
         sources=", ".join(
             f'"{key}" = {tomlkit.item(own).as_string()}' for key, own in sources.items()
         ),
@@ -116,12 +127,10 @@ def of_design(name: str, design: Design, curve: str) -> str:
         diameter=1e3 * design.diameter,
         centre=design.length - design.mass_centre,
         rear=rear,
-        front="\n".join(map(_button, others)),
+        front="\n".join(_further(guided["part"], place) for place in others),
         inertia=f"\ninertia = {{ {inertia} }}",
-        profile="1010" if small else "1515",
-        play="",
         rail=design.rail_length,
-        mounts=_mounts(design.rail_length),
+        **guided,
     )
 
 
@@ -133,8 +142,39 @@ def csv(design: Design) -> str:
     return "time_s,force_N\n" + "".join(f"{time:g},{force:g}\n" for time, force in kept)
 
 
-def _button(place: float) -> str:
-    return f'[[buttons]]\nplace = "{place:.6g} m"'
+def _in_slot(profile: str, play: str, rail: float) -> dict[str, str]:
+    """What is of buttons in the text, on a ``rail`` (m) with this profile."""
+    return {
+        "guided": "two rail buttons",
+        "part": "buttons",
+        "rests": "lies on the rail",
+        "first": _BUTTON.format(profile=profile, play=play),
+        "mounts": _mounts(usual.mounts(rail)),
+        "section": "",
+        "element": usual.element_size(rail),
+    }
+
+
+def _on_rod(rod: float, inner: float, length: float) -> dict[str, str]:
+    """What is of lugs with these sizes (m) in the text, on a ``rod`` of this diameter (m)."""
+    return {
+        "guided": "launch lugs on a rod",
+        "part": "lugs",
+        "rests": "hangs below the rod",
+        "first": _LUG.format(inner=1e3 * inner, length=1e3 * length),
+        "mounts": _mounts(usual.foot()),
+        "section": f'\nsection = {{ shape = "rod", diameter = "{1e3 * rod:.6g} mm" }}',
+        "element": usual.rod_element_size(rod),
+    }
+
+
+def _materials(part: str) -> dict[str, str]:
+    words = "assumed: nylon on steel" if part == "lugs" else "assumed: acetal on aluminium"
+    return dict.fromkeys(("contact", "friction"), words)
+
+
+def _further(part: str, place: float) -> str:
+    return f'[[{part}]]\nplace = "{place:.6g} m"'
 
 
 def errors(given: Mapping[str, float], inclination: float = _INCLINATION) -> str:
@@ -155,12 +195,14 @@ def _sources(
     size: tuple[float, float] | None,
     thrust_curve: Mapping[str, str] | None,
 ) -> str:
-    found = dict.fromkeys(("payload", "buttons", "rail", "thrust_offset", "gravity"), "assumed")
-    found |= dict.fromkeys(("contact", "friction"), "assumed: acetal on aluminium")
+    part = "lugs" if "rod" in given else "buttons"
+    found = dict.fromkeys(("payload", part, "rail", "thrust_offset", "gravity"), "assumed")
+    found |= _materials(part)
     keys = {
         "mass": ("payload.mass",),
         "clearance": ("contact.clearance",),
         "rail_length": ("rail.end",),
+        "rod": ("rail.section",),
     }
     for option in given:
         found |= dict.fromkeys(keys[option], from_catalogue.GIVEN)
@@ -177,8 +219,6 @@ def _sources(
     return ", ".join(f'"{key}" = "{own}"' for key, own in found.items())
 
 
-def _mounts(rail: float) -> str:
-    """Clamps along a ``rail`` (m)."""
-    return ", ".join(
-        f'{{ start = "{start:.4g} m", end = "{end:.4g} m" }}' for start, end in usual.mounts(rail)
-    )
+def _mounts(spans: list[tuple[float, float]]) -> str:
+    """Clamps on these ``spans`` (m)."""
+    return ", ".join(f'{{ start = "{start:.4g} m", end = "{end:.4g} m" }}' for start, end in spans)
