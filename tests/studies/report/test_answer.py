@@ -148,6 +148,11 @@ def test_rates_by_hand_stand_beside_those_of_the_run(page):
     shown = html(answer.draw(page))
     assert "by hand: roll, transverse (deg/s)" in shown and "1.000, 0.500" in shown
     assert "moment impulse of the thrust over the inertia" in shown
+    exit_ = {"velocity_m_s": [1.0, 0.0, 0.0], "rate_deg_s": [2.0, 0.0, 0.0]}
+    pin = {"by_hand_at_exit": {"rate_deg_s": [0.0, 3.0, 4.0], "words": "a rigid rocket"}}
+    rows[1] |= {"impulse_after_exit": 0.7, "at_exit": exit_, **pin}
+    at_exit = html(answer.draw(page))
+    assert "0.000, 5.000" in at_exit and "1.000, 0.500" not in at_exit
 
 
 def test_the_largest_rate_of_converged_conditions_is_said_where_another_is_larger(page):

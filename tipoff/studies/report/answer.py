@@ -65,7 +65,8 @@ _BURNT = 1e-3  # of the impulse: a smaller share after the exit is not shown
 _HAND_NOTE = (
     "By hand: the same two rates of a rigid payload, from the moment impulse of the thrust over "
     "the inertia. If one pad touches, the impulse of its force is added. Both must be near the "
-    "finite elements. The gyroscopic moment is left out."
+    "finite elements. The gyroscopic moment is left out. Of a rocket that leaves under thrust: the rates at exit "
+    "of a rigid rocket that turns about its rear button after the front one left."
 )
 
 
@@ -325,14 +326,15 @@ def _at_exit(row: ConditionRun, own: Range | None) -> list:
 
 def _by_hand(rows: Sequence[ConditionRun]) -> bool:
     """Whether any of the rates can be computed by hand."""
-    return any(row.by_hand for row in rows)
+    return any(_hand(row) for row in rows)
 
 
 def _hand(row: ConditionRun) -> str | None:
-    """Roll and transverse rate from moment impulse over inertia, if at most one pad touches."""
-    if row.by_hand is None:
+    """Roll and transverse rate by hand at the instant that counts for the run, where that is valid."""
+    found = row.by_hand_at_exit if row.at == EXIT else row.by_hand
+    if found is None:
         return None
-    rate = row.by_hand.rate_deg_s
+    rate = found.rate_deg_s
     return f"{uncertain(roll(rate))}, {uncertain(transverse(rate))}"
 
 
