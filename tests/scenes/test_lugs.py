@@ -11,6 +11,7 @@ from tests.exact import pivot
 from tests.scenes.test_parts import ROCKET
 from tipoff import lowfi
 from tipoff.mechanics.run_limits import EXIT_WINDOW
+from tipoff.results import hand_calculation
 from tipoff.scenes import SceneError, guides, load, parse, scene_model, uncertainty
 from tipoff.scenes.variation import Variations
 
@@ -139,6 +140,9 @@ def test_the_rear_lug_is_a_pin_after_the_front_one_left(angle):
     # Control:
     start = pivot.start((mass, inertia), -REAR, scene.gravity.z, last - first)
     assert abs(start / exact - 1.0) > 0.02
+    by_hand = hand_calculation.pinned(scene, run)
+    assert not isinstance(by_hand, str) and "rear lug" in by_hand.words
+    assert by_hand.rate_rad_s == pytest.approx((0.0, -start, 0.0), rel=2e-3, abs=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,7 @@ a second pad are left out. So the result is valid if no pad or one pad touches. 
 direction of the platform, so its lever grows while the payload turns: by about the angle times the
 distance of the spring, which must be small beside the moment.
 
-A rocket whose front button has left turns about its rear one, at the distance d behind the mass centre::
-
-    w_y' = (M_y - d (F_z + m g_z)) / (J_yy + m d^2),      w_z' = (M_z + d (F_y + m g_y)) / (J_zz + m d^2)
-
-with moment M of the thrust about the mass centre and its forces F across the rail. The rear button is a pin
-without play, and the slot holds the roll. This is the rate at exit.
+A rocket whose front button has left turns about its rear one (``mechanics.estimates.pin``). This is the rate at exit.
 """
 
 import math
@@ -23,8 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.mechanics.absent import offset as thrust_offset
-from tipoff.mechanics.estimates import ends
+from tipoff.mechanics.estimates import ends, pin
 from tipoff.mechanics.instant import EXIT, SETTLED
 from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.mechanics.outcome import relative_motion
@@ -108,34 +102,23 @@ def _rates(scene: Scene, run: "Trajectory") -> ByHand | str:
 
 
 def pinned(scene: Scene, run: "Trajectory") -> ByHand | str:
-    """Rates at exit of a rocket on two buttons that turns about the rear one; or why it has none."""
-    buttons = [guide for guide in guides.of_run(scene, run) if guide.name.startswith("button")]
-    if len(buttons) != 2 or scene.platform is not None:
-        return "the rocket has not two buttons on fixed rails"
-    rear, front = sorted(buttons, key=lambda each: each.place_m[0])
+    """Rates at exit of a rocket on two buttons or lugs that turns about the rear one; or why it has none."""
+    parts = [guide for guide in guides.of_run(scene, run) if not guide.name.startswith("pad")]
+    if len(parts) != 2 or scene.platform is not None:
+        return "the rocket has not two buttons or lugs on fixed rails"
+    rear, front = sorted(parts, key=lambda each: each.place_m[0])
+    name = rear.name.split()[0]
     if rear.leaves_s is None or front.leaves_s is None:
-        return "a button stays on the rail"
+        return f"a {name} stays on the rail"
     model = scene_model.build(scene)
-    distance = -(rear.place_m[0] - model.payload.mass_centre[0])
-    if not distance > 0.0:
-        return "the rear button is in front of the mass centre"
-    offset, body, mass = (
-        thrust_offset(model.thrust_offset),
-        model.payload.inertia,
-        model.payload.mass,
-    )
+    behind = model.payload.mass_centre[0] - rear.place_m[0]
+    if not behind > 0.0:
+        return f"the rear {name} is in front of the mass centre"
     impulse = thrust_law.impulse(model.thrust, rear.leaves_s)
     impulse -= thrust_law.impulse(model.thrust, front.leaves_s)
-    moment = impulse * np.cross(offset.arm, offset.direction)
-    force = impulse * np.array(offset.direction)
-    if model.body_force is not None:
-        force += mass * (rear.leaves_s - front.leaves_s) * np.array(model.body_force)
-    about_pin = np.diag(body) + mass * distance**2
-    turning = np.array([0.0, moment[1] - distance * force[2], moment[2] + distance * force[1]])
-    words = (
-        "a rigid rocket turns about its rear button after the front one left, without play and roll"
-    )
-    return ByHand(_vector(turning / about_pin), EXIT, words)
+    found = pin.rates(model, behind, impulse, rear.leaves_s - front.leaves_s)
+    words = f"a rigid rocket turns about its rear {name} after the front one left, without play and roll"
+    return ByHand(_vector(found), EXIT, words)
 
 
 def _vector(values: np.ndarray) -> Vector:

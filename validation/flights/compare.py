@@ -11,8 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from tipoff import highfi, lowfi
+from tipoff.mechanics.estimates import pin
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.results.trajectory import Trajectory
+from tipoff.scenes import scene_model
+from tipoff.scenes.scene import Scene
 from tipoff.studies.measured.launch.quantities import (
     BY_SIZE,
     LATERAL,
@@ -29,7 +32,7 @@ from tipoff.studies.measured.launch.quantities import (
 )
 from tipoff.workspace.progress import say
 from validation.flights import launchers, record
-from validation.flights.launchers import GRAVITY, HEDY, PSAS, Variant
+from validation.flights.launchers import HEDY, PSAS, Variant
 from validation.flights.record import Flown
 
 ELEMENT = 20e-3  # m
@@ -109,35 +112,23 @@ def _with_noise(
     return found | quantities(own, clean + own.shaken(generator)), clean
 
 
-def pinned(own: Flown, variant: Variant, draw: dict[str, float], seed: int) -> dict[str, float]:
-    """A rigid rocket without play that turns about its rear guide after the front one has left. The thrust
-    and gravity across the rail turn it; it does not roll."""
-    launcher = own.launcher
-    travel = launcher.rail - variant.foot
+def pinned(
+    own: Flown, scene: Scene, variant: Variant, draw: dict[str, float], seed: int
+) -> dict[str, float]:
+    """The quantities of a rigid rocket on a pin (``tipoff.mechanics.estimates.pin``), its rear guide, after the front
+    one has left."""
+    travel = own.launcher.rail - variant.foot
     leaves = [
         float(np.interp(way, own.way, own.time))
         for way in (travel - variant.front + variant.rear, travel)
     ]
-    mass, back = launcher.mass * draw["mass"], -variant.rear
-    force = float(np.interp(own.left, *record.thrust(own).T))
-    moment = np.zeros(2)  # about y and z
-    for size, angle, sign in (
-        (launcher.arm * math.radians(draw["misalignment"]), "misalignment_angle", 1.0),
-        (draw["thrust_offset"], "thrust_offset_angle", 1.0),
-        (draw["mass_offset"], "mass_offset_angle", -1.0),
-    ):
-        phi = math.radians(draw[angle])
-        moment += sign * force * size * np.array([math.sin(phi), -math.cos(phi)])
-    moment[0] += mass * GRAVITY * math.cos(launcher.elevation) * back
-    inertia = launcher.transverse + mass * back**2
-    rate = np.array([0.0, *(moment / inertia * (leaves[1] - leaves[0]))])
-    clean = np.zeros((own.time.size, 3))
-    free = (own.time > leaves[0])[:, None]
-    share = np.clip((own.time - leaves[0]) / (leaves[1] - leaves[0]), 0.0, 1.0)[:, None]
+    time, force = leaves[1] - leaves[0], float(np.interp(own.left, *record.thrust(own).T))
+    model = scene_model.build(scene.replace(launchers.changes(own.launcher, draw)))
     turn = _turn(draw["orientation"])
-    clean = np.where(free, share * (turn @ rate), clean)
+    rate = turn @ pin.rates(model, -variant.rear, force * time, time)
+    share = np.clip((own.time - leaves[0]) / time, 0.0, 1.0)[:, None]
     speed = float(np.interp(leaves[1], own.time, own.speed))
-    return _with_noise(own, clean, (leaves[1], speed), turn @ rate, seed)[0]
+    return _with_noise(own, share * rate, (leaves[1], speed), rate, seed)[0]
 
 
 @dataclass
@@ -194,7 +185,8 @@ def compared(own: Flown, folder: Path, cases: int, seed: int = 1) -> Flight:
                     if model == COMPLIANT:
                         rates.append(clean)
         found["pin"] += [
-            pinned(own, variant, draw, 1000 * number + place) for place, draw in enumerate(draws)
+            pinned(own, scenes[number], variant, draw, 1000 * number + place)
+            for place, draw in enumerate(draws)
         ]
     band = np.quantile(np.array(rates), [0.025, 0.975], axis=0)
     return Flight(own, table(measured(own), found), np.moveaxis(band, 0, 1), len(rates), lost)
