@@ -18,10 +18,11 @@ EXAMPLED = .venv/.exampled
 # A worker that crashes ends the run and its test is named. If pytest replaced the worker, it would wait without end.
 PARALLEL = --numprocesses=auto --dist=loadfile --max-worker-restart=0
 # Tests that take a second or two each where kernels are compiled.
-QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics tests/results tests/meshes \
+QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/results tests/meshes \
+  $(filter-out tests/mechanics/test_pushers.py,$(wildcard tests/mechanics/test_*.py)) \
   $(patsubst %,tests/highfi/%,elements mesh statics extruded contact/test_hertz.py test_compliance.py) \
   tests/highfi/statics/test_stable_step.py $(patsubst %,tests/highfi/dynamics/test_%.py,waves bars) \
-  $(patsubst %,tests/lowfi/test_%.py,ejection flying numerics statuses tip_off) \
+  $(patsubst %,tests/lowfi/test_%.py,ejection numerics statuses tip_off) \
   $(patsubst %,tests/lowfi/contact/test_%.py,thermal_offset extreme_contacts friction) tests/lowfi/dynamics/test_momentum.py \
   tests/studies/test_names.py tests/studies/agreement tests/studies/cost/test_choice.py tests/studies/sweeps/test_knee.py \
   tests/workspace/test_models.py tests/studies/report

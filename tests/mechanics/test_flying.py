@@ -1,14 +1,16 @@
-"""A velocity that payload and platform share changes nothing, nor does the place of the scene."""
+"""A velocity that payload, rails and platform share changes nothing in any model, nor does the place of the
+scene."""
 
 import numpy as np
 import pytest
 
+from tests.highfi.support import COARSE, tiny, whole
 from tests.lowfi.compliance import reference_compliance
-from tipoff import lowfi
+from tipoff import highfi, lowfi
 from tipoff.scenes import load
 from tipoff.scenes.scene import Scene
 
-REFERENCE = load("clamped").condition("phi35")
+REFERENCE, TINY = load("clamped").condition("phi35"), tiny()
 # m/s, the last one 7.5 km/s across the axes
 FLIGHTS = [(1000.0, 0.0, 0.0), (0.0, -5000.0, 0.0), (4330.1, 3061.9, -5303.3)]
 AXES = "xyz"
@@ -46,30 +48,39 @@ def assert_same(flown, rest, velocity: tuple) -> None:
     ):
         assert np.abs(getattr(flown, name) - moved - getattr(rest, name)).max() <= 1e-9, name
     assert np.abs(flown.rate - rest.rate).max() <= 1e-9 * np.abs(rest.rate).max()
-    assert flown.checks["energy_error"] == pytest.approx(rest.checks["energy_error"], rel=1e-3)
+    for name in ("energy_error", "transverse_energy_error"):
+        assert flown.checks[name] == pytest.approx(rest.checks[name], rel=1e-3), name
     here = np.add(rest.outcome.exit_position, np.multiply(velocity, rest.outcome.exit_time))
     assert np.abs(np.subtract(flown.outcome.exit_position, here)).max() <= 1e-9
     moving = np.add(rest.outcome.exit_platform_velocity, velocity)
     assert np.abs(np.subtract(flown.outcome.exit_platform_velocity, moving)).max() <= 1e-9
 
 
-@pytest.mark.case("O50")
-@pytest.mark.parametrize("velocity", FLIGHTS)
-def test_springs(velocity):
-    assert_same(
-        lowfi.run(flying(REFERENCE, velocity), "springs"), lowfi.run(REFERENCE, "springs"), velocity
-    )
+def on_springs(scene: Scene):
+    return lowfi.run(scene, "springs")
+
+
+def on_compliance(scene: Scene):
+    return lowfi.run(scene, compliance=reference_compliance())
+
+
+def in_finite_elements(scene: Scene):
+    return whole() if scene is TINY else highfi.run(scene, COARSE)
 
 
 @pytest.mark.case("O50")
-@pytest.mark.parametrize("velocity", FLIGHTS)
-def test_compliant_contact(velocity):
-    compliance = reference_compliance()
-    assert_same(
-        lowfi.run(flying(REFERENCE, velocity), compliance=compliance),
-        lowfi.run(REFERENCE, compliance=compliance),
-        velocity,
-    )
+@pytest.mark.parametrize(
+    ("solve", "scene", "velocity"),
+    [
+        *((on_springs, REFERENCE, velocity) for velocity in FLIGHTS),
+        *((on_compliance, REFERENCE, velocity) for velocity in FLIGHTS),
+        pytest.param(in_finite_elements, TINY, FLIGHTS[0], marks=pytest.mark.slow),
+        (in_finite_elements, TINY, FLIGHTS[-1]),
+    ],
+)
+def test_a_uniform_velocity_changes_nothing(solve, scene, velocity):
+    """The ledgers close as at rest."""
+    assert_same(solve(flying(scene, velocity)), solve(scene), velocity)
 
 
 def test_rows_of_an_ensemble_are_single_runs():
