@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, overload
 
 import numba
 from llvmlite.binding import Linkage
+from numba.core import sigutils, typed_passes, types, untyped_passes
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.compiler_machinery import PassManager
 from numba.core.registry import CPUDispatcher
 
 from tipoff import sources
@@ -39,6 +42,14 @@ class _PartLibrary(JITCodeLibrary):
     of 100 s and 610 MB for the loops of the surrogate, 79 s instead of 49 s for the loop of finite
     elements.
     """
+
+    def _optimize_functions(self, module) -> None:
+        """Simplify the functions that ``module`` defines, so that there is less to link."""
+        module.data_layout = self._codegen._data_layout
+        passes, options = self._codegen._function_pass_manager(opt=1)
+        for function in module.functions:
+            if not function.is_declaration:
+                passes.run(function, options)
 
     def finalize(self) -> None:
         """The kernel that Python calls links and optimises the code."""
@@ -109,8 +120,26 @@ class Options(Flags):
         return hash(frozenset(self._values))
 
 
+# Numba's passes that a kernel needs, in Numba's order. It has no closures, generators, array expressions and
+# reference counts, and each pass takes a hundredth of the time to compile or more.
+_PASSES = (
+    untyped_passes.TranslateByteCode,
+    untyped_passes.FixupArgs,
+    untyped_passes.IRProcessing,
+    untyped_passes.RewriteSemanticConstants,
+    untyped_passes.DeadBranchPrune,
+    untyped_passes.GenericRewrites,
+    untyped_passes.ReconstructSSA,
+    untyped_passes.DeadBranchPrune,
+    typed_passes.NopythonTypeInference,
+    typed_passes.PreLowerStripPhis,
+    typed_passes.NativeLowering,
+    typed_passes.NoPythonBackend,
+)
+
+
 class _PartCompiler(Compiler):
-    """Numba's compiler with the library that is set here."""
+    """Numba's compiler with the library and the passes that are set here."""
 
     library: type[JITCodeLibrary] = _PartLibrary
 
@@ -118,11 +147,15 @@ class _PartCompiler(Compiler):
         super().__init__(typing, target, library, arguments, returned, Options(flags), local)
 
     def define_pipelines(self) -> list:
-        """Numba's passes."""
+        """The passes of a kernel."""
         state = self.state
         state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
-        return super().define_pipelines()
+        manager = PassManager("kernel")
+        for each in _PASSES:
+            manager.add_pass(each, each.__name__)
+        manager.finalize()
+        return [manager]
 
 
 class _EntryCompiler(_PartCompiler):
@@ -141,6 +174,22 @@ class _Part(CPUDispatcher):
             targetoptions=_OPTIONS | _ARRAYS | flags | options,
             pipeline_class=_PartCompiler,
         )
+
+    def get_call_template(self, arguments, named):
+        """Numba's. A constant counts as any value of its type: else each has code of its own."""
+        plain = tuple(map(types.unliteral, arguments))
+        return super().get_call_template(
+            plain, {name: types.unliteral(each) for name, each in named.items()}
+        )
+
+    @global_compiler_lock
+    def compile(self, signature):
+        """Numba's, without its timers. Each call of LLVM would stop those of all kernels above, too."""
+        arguments, returned = sigutils.normalize_signature(signature)
+        if arguments not in self.overloads:
+            with self._compiling_counter:
+                self.add_overload(self._compiler.compile(arguments, returned))
+        return self.overloads[arguments].entry_point
 
     def __call__(self, *arguments):
         if not hasattr(self, "_caller"):
