@@ -215,6 +215,17 @@ def test_splines_of_a_large_compliance_are_held_for_one_number_of_modes(monkeypa
         assert again.cubic(1)[0] is again.cubic(1)[0] and ended() is None
 
 
+def test_splines_above_a_size_are_held_without_modes_and_for_one_number(monkeypatch):
+    """As in the pilot of an ensemble, where each case chooses another number. Control: the splines of a
+    smaller one stay for every number."""
+    for smallest, ends in ((np.inf, False), (0.0, True)):
+        monkeypatch.setattr(splines, "SMALL", smallest)
+        found = of_identity(5)
+        without, one = found.cubic(0)[0], weakref.ref(found.cubic(1)[0])
+        assert found.cubic(2)[0] is found.cubic(2)[0] and found.cubic(0)[0] is without
+        assert (one() is None) is ends
+
+
 def of_identity(stations: int) -> RailCompliance:
     """Two faces on one rail that only move themselves, with two modes."""
     flexibility = np.zeros((stations, 2, 2, PATTERNS, PATTERNS))

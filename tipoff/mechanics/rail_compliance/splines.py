@@ -10,8 +10,9 @@ from tipoff.mechanics.rail_compliance import pairs, residual
 from tipoff.mechanics.rail_compliance.stations import between_faces, breaks, cubic
 
 _KEEPING = threading.Lock()
-# bytes of F, above which splines are held for one number of modes only, and for one order of a pair of faces
-LARGE = 1e8
+# Bytes of F. Up to the first, splines are held for every number of modes; above it without modes and for one
+# number; above the second for one number only, and for one order of a pair of faces.
+SMALL, LARGE = 1e7, 1e8
 
 
 class Splined:
@@ -49,11 +50,12 @@ class Splined:
         if self.dragged is None:
             return None
         key = "friction", modes
-        if key not in self._cubics:
+        found = self._cubics.get(key)
+        if found is None:
             shape = residual.along(self)[..., :modes]
             between = self._between_faces(residual.dragged(self, modes))
-            self._cubics[key] = between, *self._of_modes(shape)
-        return self._cubics[key]
+            found = self._cubics[key] = between, *self._of_modes(shape)
+        return found
 
     def _of_modes(self, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Shapes (s,f,p,n) of modes between stations (s-1,f,n,4,p), and the largest displacement (f,n)
@@ -62,12 +64,17 @@ class Splined:
         return along, np.abs(self._to_part(shape)).sum(axis=2).max(axis=0)
 
     def _make_room(self) -> None:
-        """Forget the splines of all ``LARGE`` compliances if this is one."""
-        if self._is_large:
-            with _KEEPING:
+        """Forget the splines of all ``LARGE`` compliances if this is one; above ``SMALL``, its own with
+        modes."""
+        assert self.flexibility is not None
+        with _KEEPING:
+            if self._is_large:
                 for other in _WITH_SPLINES:
                     other._cubics.clear()
                 _WITH_SPLINES.add(self)
+            elif self.flexibility.nbytes > SMALL:
+                for key in self._cubics.keys() - {0, ("friction", 0)}:
+                    self._cubics.pop(key)
 
     def cubic_of(self, moved: np.ndarray) -> np.ndarray:
         """Displacements (s,f,p,...) of the walls, in all or the first patterns, between stations
