@@ -119,14 +119,14 @@ convergence: $(READY) ## the error of the reference itself: meshes, steps, inter
 
 rails: $(READY) ## two more rails, calibrated and judged at 4 mm: they stand on the page of SCENE
 	set -e; for rail in $(filter-out $(SCENE),thin titanium); do \
-	  $(TIPOFF) compare --scene $$rail --element-size 4 --out $(OUT); done
+	  $(TIPOFF) compare --scene $$rail --set studies.element_size="4 mm" --out $(OUT); done
 
 # Each line goes on where it was interrupted. The launches of other scenes are those of the tutorials.
 full-report: rails ## everything again from one state: all studies, other rails, tails, launchers, speeds, pages of results (hours)
 	$(EVIDENCE) montecarlo $(ASKED) --cases 100000 --reference 118 --finer 6
 	$(EVIDENCE) report --every $(ASKED)
 	$(TIPOFF) compare --scene cubesat_3u --neighbours 120 --out $(OUT)
-	$(TIPOFF) compare --scene rocket_rail --element-size "10 mm" --neighbours 180 --out $(OUT)
+	$(TIPOFF) compare --scene rocket_rail --set studies.element_size="10 mm" --neighbours 180 --out $(OUT)
 	$(if $(RECORDS),$(EVIDENCE) flights --out $(OUT) --records $(RECORDS))
 	$(EVIDENCE) bench --out $(OUT)
 	$(if $(filter reference,$(SCENE)),.venv/bin/python -m validation.documents.readme $(OUT)/$(SCENE))

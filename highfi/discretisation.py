@@ -161,7 +161,7 @@ def _not_solved(rail: RailMesh) -> str:
     ratio = float(np.median(lengths.max(axis=1) / lengths.min(axis=1)))
     return (
         "no convergence of the solution with elements of half the size; the elements are "
-        f"{ratio:.0f} times as long as thick, and shorter ones (--element-size) converge sooner"
+        f"{ratio:.0f} times as long as thick, and shorter ones (studies.element_size) converge sooner"
     )
 
 

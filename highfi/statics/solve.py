@@ -36,7 +36,7 @@ def _factored(stiffness: csc_array):
         )
     except MemoryError:
         freedoms = f"the statics of a rail with {stiffness.shape[0]:,} degrees of freedom"
-        raise MemoryError(f"{freedoms}; larger elements need less: --element-size") from None
+        raise MemoryError(f"{freedoms}; larger elements need less: studies.element_size") from None
 
 
 class Clamped:

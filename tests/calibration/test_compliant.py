@@ -165,7 +165,7 @@ def test_the_command_fits_curves_and_others_run_with_the_file(tmp_path, monkeypa
     monkeypatch.setattr(calibration, "run", quick(calibration.run))
     hidden = tiny().replace({"contact.clearance": "0.2 mm"})
     file = write_curves(tmp_path / "test.csv", lowfi.run(hidden, compliance=tiny_compliance()))
-    common = ["--scene", "tiny", "--out", str(tmp_path), "--element-size", "8"]
+    common = ["--scene", "tiny", "--out", str(tmp_path), "--set", "studies.element_size=8 mm"]
     fit = [
         "calibrate",
         *common,
@@ -230,7 +230,16 @@ def test_hidden_values_of_the_finite_elements_are_covered(tmp_path, monkeypatch)
     for name in ("phi15", "phi60"):
         run = tipoff.run(scene.condition(name), "finite-elements", element_size=8e-3)
         files += ["--reference", f"{name}={write_curves(tmp_path / name, run)}"]
-    asked = ["calibrate", "--scene", "tiny", "--out", str(tmp_path), "--element-size", "8", *files]
+    asked = [
+        "calibrate",
+        "--scene",
+        "tiny",
+        "--out",
+        str(tmp_path),
+        "--set",
+        "studies.element_size=8 mm",
+        *files,
+    ]
     call(*asked, "--fit", "contact.clearance,friction.dynamic")
     found = Calibration.load(tmp_path / "tiny/curves/calibration-compliant.toml")
     assert inside(found.with_model_error, [0.262e-3, 0.13]).all()

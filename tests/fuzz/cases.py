@@ -108,7 +108,7 @@ def _prepared(file: Path, folder: Path) -> None:
     """A scene as far as its mesh and the records of the solvers."""
     from tipoff import highfi
 
-    study = study_of(str(file), folder / "out", [], element_size=COARSE)
+    study = study_of(str(file), folder / "out", [f"studies.element_size={COARSE} mm"])
     whole = study.scene
     assert scenes.parse(whole.resolved(), bare_numbers_are_si=True).hash == whole.hash
     for scene in list(study.conditions.values())[:2]:

@@ -12,7 +12,6 @@ from tipoff import highfi
 from tipoff.comparison.curves import Curves
 from tipoff.scenes import SceneError, load, parse, rounding
 from tipoff.scenes.distributions import Uniform
-from tipoff.studies.commands.options import in_millimetres
 from tipoff.units import duration
 
 LENGTHS = {"m": 1e6, "cm": 1e4, "mm": 1e3, "um": 1.0, "inch": 25400.0, "ft": 304800.0}
@@ -141,11 +140,11 @@ def test_dimensions_on_their_bound(unit):
     raw["rail"]["thickness"] = length(0.999, unit)
     assert not accepted(raw)
     for size, sound in ((50, True), (100_000, True), (49.99, False), (100_001, False)):
+        raw = small(studies={"element_size": length(size, unit)})
+        assert accepted(raw) == sound
         if sound:
-            assert in_millimetres(length(size, unit)) == pytest.approx(1e-3 * size)
-        else:
-            with pytest.raises(Exception, match="at least 0.05 mm"):
-                in_millimetres(length(size, unit))
+            found = parse(raw).studies
+            assert found.element_size == pytest.approx(1e-6 * size)
 
 
 @pytest.mark.parametrize("hour", ["3600 s", "60 min", "1 hour", "3.6e6 ms", "3.6e9 us", "1/24 day"])

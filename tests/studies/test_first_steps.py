@@ -8,6 +8,7 @@ import typer
 from typer.testing import CliRunner
 
 from tests.studies.synthetic import flight
+from tipoff import scenes
 from tipoff.studies.cli import app
 from tipoff.studies.commands import options, running
 
@@ -49,25 +50,24 @@ def test_completion_of_conditions(scene, incomplete, names):
     assert options.condition_names(given, incomplete) == names
 
 
-@pytest.mark.parametrize("text, value", [("4 mm", 4.0), ("0.4 cm", 4.0), ("4", 4.0)])
-def test_an_element_size_has_a_unit(text, value):
-    assert options.in_millimetres(text) == pytest.approx(value, rel=1e-15)
-
-
-def test_every_command_with_a_scene_takes_the_size_of_elements_and_strict():
-    """A rail of metres needs coarser elements than the default."""
-    commands = typer.main.get_command(app).commands
-    options = {name: {item.name for item in each.params} for name, each in commands.items()}
-    of_scenes = {name: given for name, given in options.items() if "scene" in given}
-    assert len(of_scenes) > 15
-    assert all("element_size" in given for given in of_scenes.values())
-    assert all("strict" in given for given in of_scenes.values())
-
-
-@pytest.mark.parametrize("text", ["4 kg", "four", "0.01", "10 um", "nan", "inf", "-4 mm", ""])
+@pytest.mark.parametrize("text", ["4 kg", "four", "4", "10 um", "nan", "inf", "-4 mm", ""])
 def test_a_bad_element_size(text):
-    with pytest.raises(typer.BadParameter):
-        options.in_millimetres(text)
+    with pytest.raises(scenes.SceneError, match=r"studies\.element_size"):
+        scenes.load("tiny").replace({"studies.element_size": text})
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["run", "--element-size", "4"], '--set studies.element_size="4 mm"'),
+        (["cost", "--strict"], "tipoff run --strict"),
+        (["flight", "--range=1 km"], "--set flight.range=VALUE"),
+        (["measured", "--seed", "3"], "the file of errors states it"),
+    ],
+)
+def test_an_option_that_the_scene_states_is_no_longer_one(arguments, words):
+    found = call(*arguments, "--scene", "tiny")
+    assert found.exit_code == 2 and words in found.stderr
 
 
 @pytest.mark.parametrize(
@@ -120,15 +120,14 @@ def test_a_value_that_a_condition_replaces_is_warned_about(tmp_path, stub):
     "arguments, words",
     [
         (
-            ["flight", "--range", "5 kg", "--duration", "1 m"],
-            ["2 faults in the options", "--range"],
+            ["flight", "--set", "flight.range=5 kg", "--set", "flight.duration=1 m"],
+            ["2 faults in the options", "flight.range"],
         ),
         (["calibrate", "--fit", "contact.clearanse"], ["did you mean contact.clearance"]),
         (["ensemble", "--vary", "papr"], ["1 fault in the files", "did you mean paper?"]),
         (["new", "mine", "--mass", "12 m"], ["2 faults in the options", "FILE", "--mass"]),
         (["new", "my launcher.toml"], ["FILE: name", "at most 64 letters"]),
-        (["view", "--element-size", "4 kg"], ['for example "4 mm"']),
-        (["flight", "--altitude", "9 s"], ["--altitude", 'for example "500 km"']),
+        (["view", "--set", "studies.element_size=4 kg"], ["element_size", 'for example "']),
         (["run", "--budget", "2 kg", "--accuracy", "1"], ["2 faults", '"2 s"', '"0.1 deg/s"']),
         (["new", "mine.toml", "--clearance", "2 s"], ["--clearance", 'for example "0.25 mm"']),
     ],

@@ -16,7 +16,7 @@ QUICK = {
 }
 OTHER = "run, other elements"
 SLOW = QUICK | {
-    OTHER: ["--condition", "phi15", "--modes", "0", "--element-size", "16 mm"],
+    OTHER: ["--condition", "phi15", "--modes", "0", "--set", "studies.element_size=16 mm"],
     "ensemble": ["--cases", "4"],
     "measured": ["--cases", "50"],
     "sensitivity": ["--points", "64"],

@@ -52,7 +52,15 @@ def test_other_errors_are_not_hidden():
 def test_results_that_cannot_be_written(tmp_path):
     (tmp_path / "file").write_text("")
     for place in (tmp_path / "file", tmp_path / ("a" * 300)):
-        command = ("mesh", "--scene", "tiny", "--element-size", "8", "--out", str(place))
+        command = (
+            "mesh",
+            "--scene",
+            "tiny",
+            "--set",
+            "studies.element_size=8 mm",
+            "--out",
+            str(place),
+        )
         done = CliRunner().invoke(app, command)
         assert done.exit_code == 1 and isinstance(done.exception, SystemExit)
         assert done.stderr.splitlines()[-1].startswith("tipoff: ")

@@ -30,8 +30,8 @@ RUN = (
     "tiny",
     "--condition",
     "phi15",
-    "--element-size",
-    "8",
+    "--set",
+    "studies.element_size=8 mm",
 )
 
 

@@ -1,4 +1,4 @@
-"""``[studies]``: settings of the studies of a scene; options of commands and arguments replace
+"""``[studies]``: settings of the studies of a scene; ``--set`` of commands and arguments replace
 them. Solvers do not read this table, so it is not part of the physics. It is inherited like other
 tables."""
 
@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import Field, field_validator
 
 from tipoff.scenes.table import Table, limited
-from tipoff.scenes.units import Dimension, PositiveNumber
+from tipoff.scenes.units import ElementSize, PositiveNumber
 
 ELEMENT_SIZE = 2e-3  # m, default of all but long rails
 # Default (m) of rails up to a length (m). Statics of longer ones with the elements of shorter ones take
@@ -23,9 +23,10 @@ class StudiesTable(Table):
     """``[studies]``: element size (m) of the reference and of the rail compliance, random errors of
     a launch, and numbers that make the studies of a small scene short."""
 
-    #: Element size of the reference and of the rail compliance. Where absent: 2 mm; 10 mm for rails
+    #: Element size of the reference and of the rail compliance. Studies with many runs, or with
+    #: differences of runs, use twice this size. Where absent: 2 mm; 10 mm for rails
     #: longer than 2.1 m, 20 mm for those longer than 4 m.
-    element_size: Dimension | None = None
+    element_size: ElementSize | None = None
     #: Random errors of a launch: a file of distributions (.toml), relative to the scene file, or a name
     #: of the catalogue. The report states the 95 % range of the rates under them.
     errors: str | None = None

@@ -64,6 +64,7 @@ NonNegativeMass = quantity("kg", ge=0.0)
 NonNegativeTime = quantity("s", ge=0.0)
 PositiveTime = quantity("s", gt=0.0)
 FINEST_ELEMENTS, COARSEST_ELEMENTS = 5e-5, 0.1  # m
+ElementSize = quantity("m", ge=FINEST_ELEMENTS, le=COARSEST_ELEMENTS)
 Duration = quantity("s", gt=0.0, le=LONGEST)  # an ejection takes milliseconds, a slow one minutes
 Mass = quantity("kg", gt=0.0)
 Density = quantity("kg/m**3", gt=0.0)

@@ -194,8 +194,19 @@ def flowed(text: str) -> str:
 _IN_THE_FILE = "the file of errors states it, as its key {0}: --vary FILE"
 _MOVED = {
     ("scenes", "--pads"): "--show FILE.toml writes out all that follows from the parts of a scene",
-    ("ensemble", "--seed"): _IN_THE_FILE.format("seed"),
+    **{
+        (name, "--seed"): _IN_THE_FILE.format("seed") for name in ("ensemble", "flight", "measured")
+    },
     ("ensemble", "--sampling"): _IN_THE_FILE.format("sampling"),
+    (
+        "",
+        "--element-size",
+    ): '--set studies.element_size="4 mm", or this key in the scene, states it',
+    ("", "--strict"): "tipoff run --strict refuses implausible values",
+    **{
+        ("flight", f"--{key}"): f"--set flight.{key}=VALUE replaces the value of the scene"
+        for key in ("altitude", "duration", "range")
+    },
 }
 
 
@@ -206,7 +217,9 @@ class _Command(TyperCommand):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         for given in args:
             option = given.partition("=")[0]
-            if words := _MOVED.get((self.name or "", option)):
+            known = any(option in each.opts for each in self.params)
+            words = _MOVED.get((self.name or "", option), _MOVED.get(("", option)))
+            if words and not known:
                 stop(f"{option}: option: no longer one: {words}", 2)
         return super().parse_args(ctx, args)
 

@@ -5,11 +5,34 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Conditions, Json, Out, SceneName, in_millimetres
+from tipoff.studies.commands.options import Conditions, Json, Out, SceneName
 from tipoff.studies.commands.running import Output, guarded
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
+
+
+def in_millimetres(text: str) -> float:
+    """A length with its unit, or a number of millimetres, in mm. Raises typer.BadParameter."""
+    from tipoff.scenes.rounding import below
+    from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS
+    from tipoff.units import to_si
+
+    try:
+        value = float(text)
+    except ValueError:
+        try:
+            value = 1e3 * to_si(text, "m")
+        except ValueError:
+            raise typer.BadParameter(
+                f'given {text!r}, expected a length, for example "4 mm", or a number of mm'
+            ) from None
+    least, most = 1e3 * FINEST_ELEMENTS, 1e3 * COARSEST_ELEMENTS
+    if below(value, least) or below(most, value):
+        raise typer.BadParameter(
+            f"given {text!r}, expected at least {least:g} mm, at most {most:g}"
+        )
+    return value
 
 
 def bench(

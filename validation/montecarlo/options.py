@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import At, Seed, Surrogate, errors_file, rate_limits
+from tipoff.studies.commands.options import At, Surrogate, errors_file, rate_limits
 from tipoff.studies.populations.reading import Reading
 
 FEWEST_FINE = 4  # draws on the finer mesh
@@ -19,7 +19,7 @@ class Cases:
     ``at`` None: the default."""
 
     cases: Annotated[int, typer.Option(metavar="N", min=100, help="Number of cases.")] = 1_000_000
-    seed: Seed = 1
+    seed: Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")] = 1
     vary: Annotated[str | None, errors_file("the reading of the paper's Table 3")] = None
     reading: Reading = Reading()
     limits: Annotated[

@@ -8,7 +8,7 @@ from tipoff.studies.commands.request import Request, scene_command
 from tipoff.studies.commands.running import Output
 
 
-@scene_command(without=["element_size"])
+@scene_command()
 def paper(
     request: Request,
     starts: Annotated[

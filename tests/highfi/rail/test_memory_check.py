@@ -164,7 +164,7 @@ def test_commands_report_it_without_a_traceback(tmp_path, monkeypatch, command, 
     app = typer.Typer()
     app.command()(command)
     result = CliRunner().invoke(
-        app, [*options, "--element-size", "1", "--out", str(tmp_path / "out")]
+        app, [*options, "--set", "studies.element_size=1 mm", "--out", str(tmp_path / "out")]
     )
     assert result.exit_code == 2
     assert (

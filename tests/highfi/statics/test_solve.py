@@ -73,5 +73,7 @@ def test_a_factor_without_memory_is_refused_with_the_remedy(monkeypatch):
 
     monkeypatch.setattr(solve, "splu", full)
     mesh = highfi.prepare(tiny(), Numerics(element_size=0.016))
-    with pytest.raises(MemoryError, match=r"degrees of freedom; larger elements .*--element-size"):
+    with pytest.raises(
+        MemoryError, match=r"degrees of freedom; larger elements .*studies.element_size"
+    ):
         solve.Clamped(assembly.of_material(mesh, tiny().rail.material))

@@ -147,9 +147,9 @@ def test_a_condition_without_a_flight_shows_its_status():
     "arguments, words",
     [
         (["--set", "flight=absent"], '--set flight.altitude="500 km" --set flight.range="100 m"'),
-        (["--range", "-5 m"], "--range"),
-        (["--range", "5 kg"], "--range"),
-        (["--altitude", "absent"], "one of altitude and mean_motion"),
+        (["--set", "flight.range=-5 m"], "flight.range"),
+        (["--set", "flight.range=5 kg"], "flight.range"),
+        (["--set", "flight.altitude=absent"], "one of altitude and mean_motion"),
         (["--set", "flight.mean_motion=1e-3 rad/s"], "one of altitude and mean_motion"),
         (["--set", "gravity.z=-9.81 m/s**2"], "fall freely"),
         (

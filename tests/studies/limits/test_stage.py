@@ -274,13 +274,13 @@ def test_too_few_cases_and_nonsense_are_refused_with_every_fault(tmp_path):
         (["--probability", "0.99", "--cases", "100"], ("--cases", "299 or more")),
         (["--probability", "0.9973", "--cases", "1108"], ("1,109 or more",)),
         (
-            ["--probability", "1.5", "--confidence", "0", "--limit", "q=1 deg/s", "--draws", "-1"],
-            ("--probability", "--confidence", "--limit", "--draws", "4 faults"),
+            ["--probability", "1.5", "--confidence", "0", "--limit", "q=1 deg/s"],
+            ("--probability", "--confidence", "--limit", "3 faults"),
         ),
         (["--limit", "x=1 deg/s", "--limit", "x=2 deg/s"], ("two limits",)),
         (
-            ["--condition", "phi99", "--draws", "-1", "--limit", "q=1 deg/s"],
-            ("phi99", "--draws", "--limit", "3 faults"),
+            ["--condition", "phi99", "--limit", "q=1 deg/s"],
+            ("phi99", "--limit", "2 faults"),
         ),
     ):
         result = CliRunner().invoke(app, arguments + more)

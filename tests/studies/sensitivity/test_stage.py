@@ -205,11 +205,10 @@ def test_bad_input_is_listed_whole_and_nothing_written(tiny, tmp_path):
     ):
         wrong = wrong.replace(right, slip)
     (tmp_path / "mine.toml").write_text(wrong + "\n[shift]\na = 1\n")
-    result = call([*tiny, "--points", "100", "--seed", "0"])
+    result = call([*tiny, "--points", "100"])
     assert result.exit_code == 2 and not (tmp_path / "out").exists()
     for words in (
         "--points",
-        "--seed",
         "factor.friction.dynamic.low",
         "factor.payload.inertia.yz.low",
         "vary.thrust_offset.misalignment.q",

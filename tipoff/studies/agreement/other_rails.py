@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _NOTE = (
     "The springs are calibrated for each scene. Conditions with contact are judged, as curves or as "
     "distributions. Errors are those of the conditions judged as curves. `tipoff compare --scene thin "
-    "--element-size 4` computes those of the thin rail of the catalogue."
+    '--set studies.element_size="4 mm"` computes those of the thin rail of the catalogue.'
 )
 
 

@@ -53,29 +53,6 @@ def _beginning_with(incomplete: str) -> list[Path]:
     ]
 
 
-def in_millimetres(text: str) -> float:
-    """A length with its unit, or a number of millimetres, in mm. Raises typer.BadParameter."""
-    from tipoff.scenes.rounding import below
-    from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS
-    from tipoff.units import to_si
-
-    try:
-        value = float(text)
-    except ValueError:
-        try:
-            value = 1e3 * to_si(text, "m")
-        except ValueError:
-            raise typer.BadParameter(
-                f'given {text!r}, expected a length, for example "4 mm", or a number of mm'
-            ) from None
-    least, most = 1e3 * FINEST_ELEMENTS, 1e3 * COARSEST_ELEMENTS
-    if below(value, least) or below(most, value):
-        raise typer.BadParameter(
-            f"given {text!r}, expected at least {least:g} mm, at most {most:g}"
-        )
-    return value
-
-
 SceneName = Annotated[
     str,
     typer.Option(
@@ -96,8 +73,8 @@ Set = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help='Change a value: --set payload.mass="9 kg". --set friction=absent removes a table. '
-        "Repeatable.",
+        help='Change a value: --set payload.mass="9 kg", --set studies.element_size="4 mm". --set '
+        "friction=absent removes a table. Repeatable.",
     ),
 ]
 Conditions = Annotated[
@@ -256,31 +233,9 @@ def of_files(flag: str) -> Any:
 
 
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on standard output.")]
-Strict = Annotated[
-    bool,
-    typer.Option("--strict", help="Refuse implausible values of the scene, instead of a warning."),
-]
-ElementSize = Annotated[
-    float | None,
-    typer.Option(
-        "--element-size",
-        metavar="LENGTH",
-        parser=in_millimetres,
-        help='Element size of the reference and of the rail compliance, "4 mm" or 4; default that '
-        "of \\[studies] in the scene, else 2 mm. Studies with many runs, or with differences of runs, use "
-        "twice this size.",
-    ),
-]
 Workers = Annotated[
     int | None,
     typer.Option("--workers", metavar="N", min=1, help="Parallel runs; default: all cores."),
-]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
-SeedOfFile = Annotated[
-    int | None,
-    typer.Option(
-        "--seed", metavar="N", min=0, help="Seed of all draws; default: that of the file."
-    ),
 ]
 
 

@@ -10,12 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tipoff.studies.commands.options import (
-    ElementSize,
     Json,
     Out,
     SceneName,
     Set,
-    Strict,
     Workers,
 )
 from tipoff.studies.commands.running import Output, guarded, study_of
@@ -31,10 +29,8 @@ class Request:
     scene: SceneName = "reference"
     out: Out = Path("out")
     set_: Set = None
-    element_size: ElementSize = None
     workers: Workers = None
     json_: Json = False
-    strict: Strict = False
 
     def study(
         self,
@@ -49,26 +45,17 @@ class Request:
             self.out,
             [*(self.set_ or ()), *overrides],
             conditions,
-            self.element_size,
             self.workers,
-            strict=self.strict,
             **settings,
         )
 
     def require_the_scene_as_it_is(self) -> None:
-        """Raise SceneError, every fault listed, for options that change the scene or its elements: a
-        result that does not depend on these would ignore them."""
+        """Raise SceneError for --set: a result that does not depend on the scene would ignore it."""
         from tipoff.faults import Fault, SceneError
 
-        given = {"--set": self.set_, "--element-size": self.element_size}
-        expected = "none: the cases of this command have scenes and elements of their own"
-        faults = [
-            Fault(option, "option", str(value), expected)
-            for option, value in given.items()
-            if value
-        ]
-        if faults:
-            raise SceneError(faults)
+        if self.set_:
+            expected = "none: the cases of this command have scenes and elements of their own"
+            raise SceneError([Fault("--set", "option", str(self.set_), expected)])
 
 
 _COMMON = inspect.signature(Request).parameters
@@ -80,7 +67,7 @@ def scene_command(
     """Decorator: a command from a function of a request and its own options that returns the output.
 
     The help lists own options after --set, and keyword-only ones after --workers. ``without``:
-    "element_size" or "workers" if the command does not have this option.
+    "workers" if the command does not have this option.
     """
     common = {name: option for name, option in _COMMON.items() if name not in without}
 
@@ -94,9 +81,9 @@ def scene_command(
         options = [
             *(common[name] for name in ("scene", "out", "set_")),
             *(option for option in own if option.kind is not Parameter.KEYWORD_ONLY),
-            *(common[name] for name in ("element_size", "workers") if name in common),
+            *([common["workers"]] if "workers" in common else []),
             *(option for option in own if option.kind is Parameter.KEYWORD_ONLY),
-            *(common[name] for name in ("json_", "strict")),
+            common["json_"],
         ]
         command.__annotations__ = {option.name: option.annotation for option in options}
         command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]

@@ -42,7 +42,6 @@ def study_of(
     out: Path,
     overrides,
     conditions=None,
-    element_size=None,
     workers=None,
     checkpoint_every=None,
     strict=False,
@@ -51,9 +50,8 @@ def study_of(
     """The study of a scene with the options of a command.
 
     ``overrides`` are texts "KEY=VALUE", ``conditions`` names, also several with commas between
-    them; ``element_size`` is in mm; ``checkpoint_every`` is a time with its unit; ``strict`` refuses
-    implausible values; further ``settings`` are fields of ``Settings``. Raises SceneError, every
-    fault listed.
+    them; ``checkpoint_every`` is a time with its unit; ``strict`` refuses implausible values; further
+    ``settings`` are fields of ``Settings``. Raises SceneError, every fault listed.
     """
     from tipoff import scenes
     from tipoff.faults import Fault, SceneError
@@ -72,8 +70,6 @@ def study_of(
     changes = {key.strip(): value.strip() for key, _, value in pairs}
     found = _of_option({"source": "--set"}, lambda: loaded.replace(changes))
     chosen = replace(defaults(found), **settings)
-    if element_size is not None:
-        chosen = replace(chosen, element_size=1e-3 * element_size)
     if workers is not None:
         chosen = replace(chosen, workers=workers)
     every = quantity("--checkpoint-every", checkpoint_every, "s", "5 min")

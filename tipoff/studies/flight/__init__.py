@@ -8,11 +8,11 @@ figures. The scene defines the orbit and the target:
   altitude = "500 km"
   range = "100 m"
 
-azimuth, elevation and roll turn the launch axis out of the flight direction. Options replace
+azimuth, elevation and roll turn the launch axis out of the flight direction. --set replaces
 values of the table:
 
-  tipoff flight --range "1 km" --cases 10000
-  tipoff flight --scene my_launcher.toml --altitude "600 km" --range "200 m" --set flight.elevation="90 deg"
+  tipoff flight --set flight.range="1 km" --cases 10000
+  tipoff flight --scene my_launcher.toml --set flight.altitude="600 km" --set flight.elevation="90 deg"
 """
 
 from tipoff.studies.flight.options import Asked

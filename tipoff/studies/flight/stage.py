@@ -28,11 +28,7 @@ NAME = "flight"
 def run(study: Study, options: Options = Options()) -> Made[Flight]:
     """The flight after the exit. Raises SceneError for a scene without ``[flight]``."""
     _require(study)
-    changed = {
-        name: value
-        for name, value in (("cases", options.cases), ("seed", options.seed))
-        if value is not None
-    }
+    changed = {} if options.cases is None else {"cases": options.cases}
     vary = uncertainty.chosen(options.vary, study.scene)
     drawn = Drawn(uncertainty.load(vary, study.scene, **changed))
     if wrong := [key for key in drawn.keys if key.split(".")[0] == "flight"]:

@@ -17,7 +17,7 @@ from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.scene import Scene
 from tipoff.studies.limits.options import Options
-from tipoff.studies.limits.within import CasesAtScale, Source, source
+from tipoff.studies.limits.within import SEED, CasesAtScale, Source, source
 from tipoff.studies.populations import draws, exceedance, stratified
 from tipoff.studies.populations.draws import Lost
 from tipoff.studies.populations.exceedance import Limit
@@ -80,7 +80,7 @@ def made(
         within.model,
         within.tolerances,
         TIMES * cases,
-        options.seed + 1,
+        SEED + 1,
         within.source,
     )
     above, *places = strata(tried.rates(1.0), limits)

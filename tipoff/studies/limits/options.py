@@ -7,7 +7,6 @@ import typer
 
 from tipoff.studies.commands.options import (
     At,
-    Seed,
     Surrogate,
     condition_names,
     errors_file,
@@ -18,9 +17,9 @@ from tipoff.workspace.options import between
 
 @dataclass(frozen=True)
 class Options:
-    """``limits`` in the form of ``exceedance.limits``; ``cases`` None: ten times the fewest; ``draws``
-    None: eight, for springs alone; ``condition`` None: the scene; ``certify`` None: no run of the
-    reference; ``vary`` None: no file of errors; ``model`` and ``at`` None: the default."""
+    """``limits`` in the form of ``exceedance.limits``; ``cases`` None: ten times the fewest;
+    ``condition`` None: the scene; ``certify`` None: no run of the reference; ``vary`` None: no file of
+    errors; ``model`` and ``at`` None: the default."""
 
     limits: Annotated[
         tuple[str, ...],
@@ -54,15 +53,6 @@ class Options:
         Literal["scene", "zero"],
         typer.Option(help="Errors that do not vary: values of the scene, or zero."),
     ] = "scene"
-    draws: Annotated[
-        int | None,
-        between(0, 1000),
-        typer.Option(
-            metavar="N",
-            help="Draws of the calibrated constants from their intervals, with --model springs; "
-            "default: 8.",
-        ),
-    ] = None
     condition: Annotated[
         str | None,
         typer.Option(
@@ -80,6 +70,5 @@ class Options:
             "reference. The result is an upper bound of the probability above a limit.",
         ),
     ] = None
-    seed: Seed = 1
     model: Surrogate = None
     at: At = None

@@ -21,7 +21,7 @@ import numpy as np
 
 from tipoff.comparison import order_statistics
 from tipoff.faults import Fault, SceneError, together
-from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.scenes import halving, uncertainty
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
@@ -38,7 +38,7 @@ from tipoff.studies.limits.results import (
     Pair,
 )
 from tipoff.studies.limits.search import Found
-from tipoff.studies.limits.within import ADVISED, REACH, TOGETHER, CasesAtScale, Factor
+from tipoff.studies.limits.within import ADVISED, REACH, SEED, TOGETHER, CasesAtScale, Factor
 from tipoff.studies.populations import answers, exceedance, population, spread
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
@@ -114,7 +114,7 @@ def _limits(texts: tuple[str, ...]) -> list[Limit]:
 
 
 def _cases(options: Options) -> int:
-    together(lambda: require(options), lambda: _draws(options))
+    require(options)
     needed = order_statistics.runs_needed(options.probability, options.confidence)
     if options.cases is None:
         return TIMES_NEEDED * needed
@@ -125,14 +125,6 @@ def _cases(options: Options) -> int:
         f"{options.confidence:g}"
     )
     raise SceneError([Fault("--cases", "value", f"{options.cases:,}", expected)])
-
-
-def _draws(options: Options) -> None:
-    if options.draws is not None and options.draws >= 0 and options.model != SPRINGS:
-        expected = (
-            f"used only with --model {SPRINGS}; the constants of compliant contact are not drawn"
-        )
-        raise SceneError([Fault("--draws", "option", str(options.draws), expected)])
 
 
 class Search:
@@ -166,8 +158,8 @@ class Search:
             else constants.draws(
                 study.scene,
                 model.calibration,
-                DRAWS if options.draws is None else options.draws,
-                options.seed,
+                DRAWS,
+                SEED,
             )
         )
         self.others: list[Surrogate] = []
@@ -213,7 +205,7 @@ class Search:
             scale = found.fails if found.tolerance is None else found.tolerance
             assert scale is not None  # a search fails somewhere or certifies a scale
             sizes = {name: scale * size for name, size in tolerances.items()}
-            drawn = self.inputs.source(choosing.scene, sizes, self.cases, self.options.seed)
+            drawn = self.inputs.source(choosing.scene, sizes, self.cases, SEED)
             chosen = within.with_modes(choosing, drawn)
             if chosen.mode_count > self.model.mode_count:
                 self.model = chosen
@@ -236,10 +228,9 @@ class Search:
         return certificate.made(self.study, self.options, self.limits, self.cases, checked_within)
 
     def _of(self, tolerances: dict[str, float], model: Surrogate | None = None) -> CasesAtScale:
-        seed = self.options.seed
         source = self.inputs.source
         return CasesAtScale(
-            self.study, NAME, model or self.model, tolerances, self.cases, seed, source
+            self.study, NAME, model or self.model, tolerances, self.cases, SEED, source
         )
 
     def _above(self, cases: CasesAtScale, limits: list[Limit]) -> Callable[[float], int]:

@@ -41,6 +41,7 @@ ADVISED = {
     "mass_eccentricity": 0.2e-3,
 }
 REACH = 5.0  # times the advised tolerances: up to the largest misalignment of the paper's sweep
+SEED = 1  # of all draws of a search
 PAIR = ("misalignment", "mass_eccentricity")
 Source = Callable[[Scene, dict[str, float], int, int], Derived | Drawn]
 """Cases of a scene within tolerances by name, from their number and a seed."""

@@ -6,12 +6,12 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import SeedOfFile, Surrogate, Vary, condition_names
+from tipoff.studies.commands.options import Surrogate, Vary, condition_names
 
 
 @dataclass(frozen=True)
 class Options:
-    """``logs`` None: those of the package; ``seed`` None: that of the file; ``condition`` None: the scene
+    """``logs`` None: those of the package; ``condition`` None: the scene
     itself; ``model`` None: the default."""
 
     logs: Annotated[
@@ -34,5 +34,4 @@ class Options:
     cases: Annotated[
         int, typer.Option("--cases", metavar="N", min=50, help="Simulated cases to compare with.")
     ] = 1000
-    seed: SeedOfFile = None
     model: Surrogate = None

@@ -117,9 +117,8 @@ STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, field="request", 
 
 
 def _drawn(study: Study, options: Options) -> Drawn:
-    seed = {} if options.seed is None else {"seed": options.seed}
     return Drawn(
-        uncertainty.load(_vary(study, options), _scene(study, options), cases=options.cases, **seed)
+        uncertainty.load(_vary(study, options), _scene(study, options), cases=options.cases)
     )
 
 

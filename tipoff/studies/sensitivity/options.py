@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from tipoff.studies.commands.options import At, Surrogate, errors_file
-from tipoff.workspace.options import Rule, between
+from tipoff.workspace.options import Rule
 
 HALVINGS = 3  # parts of the points, each half of the next, for convergence
 _FEWEST = 2**HALVINGS * 8
@@ -32,8 +32,5 @@ class Options:
             "more than the number of inputs.",
         ),
     ] = 1024
-    seed: Annotated[
-        int, between(1), typer.Option(metavar="N", help="Seed of the points and of the bootstrap.")
-    ] = 1
     model: Surrogate = None
     at: At = None

@@ -29,6 +29,7 @@ from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study, StudyError
 
 NAME = "sensitivity"
+SEED = 1  # of the points and of the bootstrap
 _FINE = Numerics().relative_tolerance  # the tables show relative changes of a thousandth
 
 
@@ -114,7 +115,7 @@ def _sobol(study: Study, model: Surrogate, options: Options) -> tuple[Sobol, Sur
     """The indices, and the surrogate with the rail modes of the cases."""
     spread = tolerances.load(options.vary or tolerances.DEFAULT, model.scene, model.name)
     inputs = len(spread.inputs)
-    points = indices.points(options.points, inputs, options.seed)
+    points = indices.points(options.points, inputs, SEED)
     found = population.run(study, NAME, model, Listed(spread.rows(points)))
     whole = indices.whole_blocks(found.settled, inputs)
     if whole.sum() < options.points // 2:
@@ -153,16 +154,14 @@ def _shares(item: answers.Quantity, found: Population, inputs: int, options: Opt
     """Spread and indices of one quantity, and its indices from the first parts of the points."""
     values = item.of(found.results)
     sizes = [options.points >> halving for halving in range(HALVINGS, -1, -1)]
-    series = [
-        indices.indices(values[: size * (inputs + 2)], inputs, options.seed) for size in sizes
-    ]
+    series = [indices.indices(values[: size * (inputs + 2)], inputs, SEED) for size in sizes]
     settled = values[np.isfinite(values)]
     return Shares(
         **item.named,
         mean=float(settled.mean()),
         sd=float(settled.std()),
         indices=series[-1],
-        first_sum_half_width=indices.sum_half_width(values, inputs, options.seed),
+        first_sum_half_width=indices.sum_half_width(values, inputs, SEED),
         convergence=tuple(
             Step(base_points=size, **(vars(one) if one else {})) for size, one in zip(sizes, series)
         ),

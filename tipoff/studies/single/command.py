@@ -83,6 +83,12 @@ def run(
             "error, sensitivity, agreement with the reference, thrust. --json always has it.",
         ),
     ] = False,
+    strict: Annotated[
+        bool,
+        typer.Option(
+            "--strict", help="Refuse implausible values of the scene, instead of a warning."
+        ),
+    ] = False,
 ) -> Output:
     """Run one or more conditions in one model; prints velocity and rates after the exit.
 
@@ -134,7 +140,7 @@ def run(
         without(own | usual | rest | flags, expected)
         models.require(models.ModelOptions(model), checkpoint_every=checkpoint_every)
         fidelity = "highfi" if model == FINITE_ELEMENTS else "lowfi"
-        every = request.study(checkpoint_every=checkpoint_every)
+        every = request.study(checkpoint_every=checkpoint_every, strict=strict)
         made = stage.run(every, fidelity)
         return Output.of(made, lambda runs: [page.settled(runs.conditions)], request.out)
     if range_:
@@ -147,7 +153,7 @@ def run(
     if request.json_:
         without({"--explain": explain or None}, "none: --json has all")
         detail = text.Detail.NOTHING
-    study = request.study(condition or [NOMINAL], checkpoint_every=checkpoint_every)
+    study = request.study(condition or [NOMINAL], checkpoint_every=checkpoint_every, strict=strict)
     names = list(study.conditions)
 
     if export:

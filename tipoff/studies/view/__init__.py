@@ -6,7 +6,7 @@ see the deformation of the rails, use "Warp By Vector" with the array "displacem
 scale factor of some hundreds. Colour by "von Mises stress (Pa)" or "contact pressure (Pa)".
 
   tipoff view --condition phi60 --frames 120
-  tipoff view --scene my_launcher.toml --element-size 4 --exaggeration 500
+  tipoff view --scene my_launcher.toml --set studies.element_size="4 mm"
 
 Pictures (peak.png, ejection.webp, and both for a dark page) need pyvista: pip install pyvista.
 The files for ParaView do not need it.

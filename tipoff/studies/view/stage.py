@@ -92,7 +92,7 @@ def run(study: Study, options: Options = Options()) -> Made[View]:
         require_success({name: original}, "show the run")
         folder = study.folder / "view" / name
         taken = _take(study, request, original, folder, options.frames)
-        found, files = _view(study, request, original, folder, taken, options.exaggeration)
+        found, files = _view(study, request, original, folder, taken)
         drawn, why = draw_pictures(found, folder)
         if why:
             say(f"view: {why}")
@@ -213,7 +213,6 @@ def _view(
     original: Trajectory,
     folder: Path,
     taken: _Observer,
-    factor: float | None,
 ) -> tuple[View, list[Path]]:
     """The result without pictures, and its files."""
     from tipoff.studies.view import vtk_files
@@ -241,7 +240,7 @@ def _view(
         peak=peak,
         bounds_m=(tuple(taken.low.tolist()), tuple(taken.high.tolist())),
         element_size_m=request.numerics.element_size,
-        factor=factor or exaggeration(taken.frames),
+        factor=exaggeration(taken.frames),
         title=f"{study.scene.name} / {request.label}",
         pictures={},
         without_pictures="",
