@@ -54,7 +54,7 @@ cost: $(READY) ## what accuracy costs in time, and how it grows with elements, p
 	$(EVIDENCE) scaling $(ASKED)
 
 stability: $(READY) ## hard cases, with the weaker methods that fail on them
-	$(TIPOFF) stability $(ASKED)
+	$(EVIDENCE) stability $(ASKED)
 
 ablation: $(READY) ## what each effect changes and costs
 	$(TIPOFF) ablation $(ASKED)
@@ -100,7 +100,7 @@ bench: $(READY) ## speed of the solvers against what one would write today: OUT/
 	$(EVIDENCE) waits --out $(OUT)
 
 report: $(READY) ## mesh to ablation, made where out of date, with all other studies that were made: OUT/SCENE/report.html
-	$(TIPOFF) report $(ASKED)
+	$(EVIDENCE) report $(ASKED)
 
 view: $(READY) ## one run to look at: VTK files for ParaView, and pictures if `make pictures` was made before
 	$(TIPOFF) view $(ASKED)

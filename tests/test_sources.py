@@ -116,7 +116,7 @@ def test_a_module_that_is_not_there(project):
 
 STAGES = [
     f"tipoff.studies.{name}.stage"
-    for name in ("runs", "agreement", "cost", "limits", "stability", "convergence")
+    for name in ("runs", "agreement", "cost", "limits", "convergence")
 ]
 
 

@@ -37,7 +37,6 @@ LEFT_OUT = {
     ("limits",): "searches of minutes: tests/studies/limits",
     ("view",): "tests/studies/view",
     ("convergence",): "minutes: tests/studies/convergence",
-    ("stability",): "minutes: tests/studies/stability",
     ("compare",): "tests/studies/agreement and blind",
     ("--install-completion",): "it changes the shell of the user",
 }

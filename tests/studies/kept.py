@@ -52,7 +52,6 @@ STAGES = (
     "mesh.stage",
     "nominal.stage",
     "sensitivity.stage",
-    "stability.stage",
     "sweeps.stage",
 )
 WITHOUT_COMMAND = ("nominal",)

@@ -16,11 +16,11 @@ from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import interface, refinement
 from tipoff.studies.cost import stage as cost
-from tipoff.studies.stability import weaker_methods
 from tipoff.studies.sweeps import stage as sweeps
 from tipoff.workspace import machine
 from tipoff.workspace.settings import Settings, defaults
 from tipoff.workspace.study import Study
+from validation.stability import weaker_methods
 
 
 def test_area_of_quadrilaterals():

@@ -10,7 +10,10 @@ from tipoff.studies import registry
 from tipoff.studies.commands import running
 from validation import STUDIES
 
-NAMES = ("montecarlo", "paper", "recovery", "ripple", "scaling", "bench", "peers", "flights")
+NAMES = (
+    *("montecarlo", "paper", "recovery", "ripple", "scaling", "stability"),
+    *("bench", "peers", "flights"),
+)
 
 
 def call(module: str, *arguments: str) -> subprocess.CompletedProcess:

@@ -1,2 +1,2 @@
-"""Questions asked of both fidelities: agreement, cost, stability, ablation; the report and the
+"""Questions asked of both fidelities: agreement, cost, ablation; the report and the
 command line."""

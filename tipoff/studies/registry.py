@@ -18,7 +18,6 @@ from tipoff.studies import (
     runs,
     sensitivity,
     single,
-    stability,
     sweeps,
     view,
 )
@@ -35,7 +34,6 @@ COMPARISON: tuple[Entry, ...] = (
     blind.ENTRY,
     curves.QUESTION,
     cost.QUESTION,
-    stability.QUESTION,
     ablation.QUESTION,
     convergence.QUESTION,
     view.ENTRY,
@@ -67,7 +65,6 @@ _FIRST = (
     "rails",
     "cost",
     "convergence",
-    "stability",
     "ablation",
 )
 

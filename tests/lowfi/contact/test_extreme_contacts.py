@@ -15,7 +15,7 @@ from tipoff.lowfi.dynamics import integrate
 from tipoff.lowfi.faces import WALL
 from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics import ledger
-from tipoff.studies.stability import weaker_methods as weaker
+from validation.stability import weaker_methods as weaker
 
 LINEAR = PAPER_PAD | {"exponent": 1.0, "stiffness": 7e7, "damping": 0.0}
 STORED = ledger.ENTRIES.index("contact_stored")

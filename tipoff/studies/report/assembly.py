@@ -41,7 +41,6 @@ _GROUPS = {
         "calibration",
         "compliance",
         "mesh",
-        "stability",
         "ablation",
         "rails",
     ),

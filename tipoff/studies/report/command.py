@@ -32,8 +32,8 @@ def report(
     """Show all results on one self-contained page; writes report.html and figures/.
 
     First come velocity and rates of the scene itself, with their 95 % range under the random errors
-    that the scene states (studies.errors). Makes mesh, highfi, lowfi, calibrate, compare, cost,
-    stability and ablation where they are out of date; the page is written again as they arrive, and
+    that the scene states (studies.errors). Makes mesh, highfi, lowfi, calibrate, compare, cost
+    and ablation where they are out of date; the page is written again as they arrive, and
     a chaotic condition gets 8 neighbours (--every: all). The page shows every other study that has
     a result; --every makes them all.
     """

@@ -2,8 +2,8 @@
 
 from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Column, Table
-from tipoff.studies.stability.stage import HardCases
-from tipoff.studies.stability.verdict import Verdict
+from validation.stability.stage import HardCases
+from validation.stability.verdict import Verdict
 
 _NOTE = (
     "Largest step: for the surrogate, the smallest value of the proven limit, which no step "

@@ -16,8 +16,8 @@ import numpy as np
 from tipoff.mechanics import ledger
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import Scene, parse
-from tipoff.studies.stability import weaker_methods as weaker
-from tipoff.studies.stability.verdict import Control, Measure, Verdict, stability, verdict
+from validation.stability import weaker_methods as weaker
+from validation.stability.verdict import Control, Measure, Verdict, stability, verdict
 
 DEFAULT_STEP = 1e-4  # s: a typical fixed step chosen without a step limit
 _MASS, _LINEAR = 20.0, 7e7

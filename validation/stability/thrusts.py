@@ -2,9 +2,9 @@
 (momentum)."""
 
 from tipoff.mechanics.laws import thrust as thrust_law
-from tipoff.studies.stability import weaker_methods as weaker
-from tipoff.studies.stability.contacts import DEFAULT_STEP, run_on_springs, single_pad
-from tipoff.studies.stability.verdict import Control, Measure, Verdict, stability, verdict
+from validation.stability import weaker_methods as weaker
+from validation.stability.contacts import DEFAULT_STEP, run_on_springs, single_pad
+from validation.stability.verdict import Control, Measure, Verdict, stability, verdict
 
 _MASS = 20.0
 

@@ -7,11 +7,11 @@ A case is a function without arguments that returns a ``Verdict``.
 from dataclasses import dataclass
 from pathlib import Path
 
-from tipoff.studies.stability import contacts, elastic, guides, thrusts
-from tipoff.studies.stability.verdict import Verdict
 from tipoff.workspace.progress import Board
 from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
+from validation.stability import contacts, elastic, guides, thrusts
+from validation.stability.verdict import Verdict
 
 CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES, **elastic.CASES}
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from tipoff.scenes.scene import Scene, load
 from tipoff.studies.agreement.verdicts import settled_change
-from tipoff.studies.stability import weaker_methods as weaker
-from tipoff.studies.stability.verdict import Control, Measure, Stability, Verdict, verdict
+from validation.stability import weaker_methods as weaker
+from validation.stability.verdict import Control, Measure, Stability, Verdict, verdict
 
 _SIZE = 0.016
 

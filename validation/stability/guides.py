@@ -14,9 +14,9 @@ from tipoff.mechanics import outcome
 from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import Scene, load, parse
-from tipoff.studies.stability import weaker_methods as weaker
-from tipoff.studies.stability.contacts import DEFAULT_STEP, run_on_springs
-from tipoff.studies.stability.verdict import (
+from validation.stability import weaker_methods as weaker
+from validation.stability.contacts import DEFAULT_STEP, run_on_springs
+from validation.stability.verdict import (
     Control,
     Measure,
     Stability,
