@@ -35,7 +35,7 @@ help: ## print this list
 	@echo "  SCENE=$(SCENE) OUT=$(OUT)"
 
 mesh: $(READY) ## mesh the rails of the scene
-	$(TIPOFF) mesh $(ASKED)
+	$(TIPOFF) view --mesh $(ASKED)
 
 highfi: $(READY) ## run the finite-element reference
 	$(TIPOFF) run --all --model finite-elements $(ASKED)
@@ -75,7 +75,7 @@ sensitivity: $(READY) ## which numbers the answer depends on: contact constants,
 	$(TIPOFF) sensitivity $(ASKED)
 
 sweeps: $(READY) ## how large misalignment and eccentricities may be: 3,600 cases
-	$(TIPOFF) sweeps $(ASKED)
+	$(TIPOFF) sensitivity --sweep 120 $(ASKED)
 
 montecarlo: $(READY) ## the paper's random errors, its 1,000 cases and 1,000,000 (CASES=10000 for fewer): rates, tails, readings (REFERENCE=60: checked by 60 runs of the reference)
 	$(EVIDENCE) montecarlo $(ASKED) $(if $(CASES),--cases $(CASES)) $(if $(REFERENCE),--reference $(REFERENCE))

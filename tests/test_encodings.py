@@ -71,7 +71,7 @@ def test_every_text_of_the_program_prints_in_any_encoding(encoding):
 
 
 def test_a_command_prints_its_table_its_files_and_its_help_in_ascii(tmp_path):
-    mesh = ("-m", "tipoff", "mesh", "--scene", "tiny", "--out", str(tmp_path))
+    mesh = ("-m", "tipoff", "view", "--mesh", "--scene", "tiny", "--out", str(tmp_path))
     out, error, code = printed("ascii", *mesh)
     assert code == 0, error
     assert "Deflection here" in out and " um, lowest" in out

@@ -33,7 +33,6 @@ LEFT_OUT = {
     ("cost",): "minutes: tests/studies/cost",
     ("report",): "every stage: tests/studies/test_pipeline.py",
     ("sensitivity",): "20,480 cases: tests/studies/sensitivity",
-    ("sweeps",): "3,600 cases: tests/studies/sweeps",
     ("limits",): "searches of minutes: tests/studies/limits",
     ("view",): "tests/studies/view",
     ("convergence",): "minutes: tests/studies/convergence",

@@ -16,7 +16,7 @@ _KILLS = 10
 _SIZES = ("64k", "128k", "256k", "512k", "1m", "2m")
 ENSEMBLE = ("ensemble", "--scene", "tiny", "--model", "springs", "--cases", "20000")
 LOWFI = ("run", "--all", "--scene", "tiny")
-MESH = ("mesh", "--scene", "tiny")
+MESH = ("view", "--mesh", "--scene", "tiny")
 
 
 def command(*arguments: str, out: Path) -> subprocess.Popen:

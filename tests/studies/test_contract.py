@@ -108,7 +108,12 @@ def test_a_result_has_the_fields_of_its_type(stage):
 
 
 # of commands that are not named as their folder
-WORDS = {"agreement": ["compare"], "blind": ["compare", "--blind", "8"]}
+WORDS = {
+    "agreement": ["compare"],
+    "blind": ["compare", "--blind", "8"],
+    "sweeps": ["sensitivity", "--sweep", "8"],
+    "mesh": ["view", "--mesh"],
+}
 PRINTED = [
     pytest.param(module, stage, id=stage.name)
     for module, stage in kept.modules()

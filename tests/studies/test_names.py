@@ -107,7 +107,9 @@ def test_conditions_that_differ_in_case_only_are_refused():
         'name = "../escaped"\n',
     ],
 )
-@pytest.mark.parametrize("command", [["run", "--condition", "{name}"], ["run", "--all"], ["mesh"]])
+@pytest.mark.parametrize(
+    "command", [["run", "--condition", "{name}"], ["run", "--all"], ["view", "--mesh"]]
+)
 def test_a_name_that_escapes_is_exit_code_2_and_nothing_is_written(tmp_path, line, command):
     inside = tmp_path / "deep" / "er"
     inside.mkdir(parents=True)

@@ -53,7 +53,8 @@ def test_results_that_cannot_be_written(tmp_path):
     (tmp_path / "file").write_text("")
     for place in (tmp_path / "file", tmp_path / ("a" * 300)):
         command = (
-            "mesh",
+            "view",
+            "--mesh",
             "--scene",
             "tiny",
             "--set",

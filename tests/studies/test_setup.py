@@ -35,7 +35,7 @@ import runpy, sys
 *scenes, out = sys.argv[1:]
 codes = []
 for scene in scenes:
-    sys.argv = ["tipoff", "mesh", "--scene", scene, "--out", out]
+    sys.argv = ["tipoff", "view", "--mesh", "--scene", scene, "--out", out]
     try:
         runpy.run_module("tipoff.studies.cli", run_name="__main__")
         codes.append(0)

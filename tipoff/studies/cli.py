@@ -49,6 +49,8 @@ RENAMED = {
     "highfi": "run --all --model finite-elements",
     "blind": "compare --blind N",
     "schema": "scenes --schema",
+    "mesh": "view --mesh",
+    "sweeps": "sensitivity --sweep N",
 }
 
 

@@ -27,7 +27,7 @@ from tipoff.studies.question import Contents, Entry, Result, Section
 # In the order of their commands; the report makes their results in this order.
 COMPARISON: tuple[Entry, ...] = (
     nominal.ENTRY,
-    mesh.QUESTION,
+    mesh.ENTRY,
     runs.ENTRY,
     calibration.ENTRY,
     agreement.ENTRY,
@@ -41,8 +41,8 @@ COMPARISON: tuple[Entry, ...] = (
 ON_DEMAND: tuple[Entry, ...] = (single.ENTRY, ensemble.ENTRY)
 # Studies for the questions of an engineer.
 QUESTIONS: tuple[Entry, ...] = (
-    sensitivity.QUESTION,
-    sweeps.QUESTION,
+    sensitivity.ENTRY,
+    sweeps.ENTRY,
     limits.QUESTION,
     flight.QUESTION,
     measured.QUESTION,

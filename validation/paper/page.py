@@ -319,7 +319,7 @@ def table_of_plateaus(found: dict[str, dict[str, str]] | None) -> Table:
         (error, float(printed[f"plateau_starts_{name}"]), *((found or {}).get(name) or _NOT_SWEPT))
         for name, error in _SWEPT.items()
     ]
-    notes = () if found else ("Not swept here yet; `tipoff sweeps` does it.",)
+    notes = () if found else ("Not swept here yet; `tipoff sensitivity --sweep 120` does it.",)
     return Table(("plateau of the rates from", "the paper", *_ABOUT), rows, notes=notes)
 
 

@@ -11,9 +11,9 @@ from tipoff.faults import SceneError
 from tipoff.scenes import load
 from tipoff.studies.cli import app
 from tipoff.studies.render.document import terminal
+from tipoff.studies.sensitivity.options import Options
 from tipoff.studies.sweeps import factors, page
 from tipoff.studies.sweeps import stage as sweeps
-from tipoff.studies.sweeps.options import Options
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
 
@@ -81,7 +81,7 @@ def test_rates_of_a_free_payload_over_the_sizes_of_the_file(tmp_path, monkeypatc
     monkeypatch.setattr(sweeps.drawing, "figures", lambda _: [])
     study = Study(free_flight.scene(), tmp_path / "out", Settings(workers=1))
     vary = written(tmp_path, POLAR + MASS)
-    found = sweeps.run(study, Options(vary=vary, angles=8)).result
+    found = sweeps.run(study, Options(vary=vary, sweep=8)).result
     for launch in found.launches:
         (factor,) = launch.factors
         exact = 1e-3 * free_flight.RATE_PER_METRE * np.array(factor.sizes)
@@ -95,7 +95,7 @@ def test_rates_of_a_free_payload_over_the_sizes_of_the_file(tmp_path, monkeypatc
     other = sweeps.run(study, Options(angles=8)).result
     assert not other.held and "not swept" not in terminal(page.draw(other))
     written(tmp_path, POLAR.replace("0.2 mm", "0.4 mm"))
-    again = sweeps.run(study, Options(vary=vary, angles=8)).result
+    again = sweeps.run(study, Options(vary=vary, sweep=8)).result
     assert again.launches[0].factors[0].sizes[-1] == 1.5
 
 
@@ -103,7 +103,7 @@ def test_a_file_without_such_an_error_is_refused(tmp_path):
     vary = written(tmp_path, MASS)
     with pytest.raises(SceneError, match="payload.mass"):
         factors.of_file(vary, load("reference"))
-    arguments = ["sweeps", "--out", str(tmp_path / "out"), "--vary", vary]
+    arguments = ["sensitivity", "--sweep", "8", "--out", str(tmp_path / "out"), "--vary", vary]
     result = CliRunner().invoke(app, arguments)
     assert result.exit_code == 2 and "thrust_offset.misalignment" in result.stderr
     assert not (tmp_path / "out").exists()

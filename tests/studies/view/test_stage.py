@@ -192,8 +192,9 @@ def test_command_writes_and_prints(viewed, monkeypatch):
     told = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
     assert told.exit_code == 0 and json.loads(told.stdout) == found
     said = CliRunner().invoke(app, arguments, catch_exceptions=False)
-    assert said.stdout.splitlines()[-1] == f"  {study.path(found['collection'])}"
-    assert f"{1e-6 * found['peak']['stress_pa']:.4g}" in said.stdout and "(MPa)" in said.stdout
+    assert said.stdout.splitlines()[-1].startswith(f"  {study.folder / found['folder']}/ (")
+    assert found["collection"] in said.stdout
+    assert f"{1e-6 * found['peak']['stress_pa']:.4g} MPa" in said.stdout
 
 
 def known(**parts):

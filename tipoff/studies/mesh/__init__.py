@@ -1,9 +1,15 @@
-"""Mesh the rails for the reference; writes mesh.json (size, surfaces, quality) and mesh.vtu.
+"""The mesh of the rails for the reference, a part of ``tipoff view``."""
 
-rail.inp is the first rail for CalculiX and Abaqus, with a load and the answers of tipoff in its
-head: ccx rail.
-"""
+from tipoff.studies.question import Contents, Entry, Result, Section
 
-from tipoff.studies.question import Question
 
-QUESTION = Question(__name__, __doc__, "Mesh", "Mesh", always=True, without=["workers"])
+def _load() -> Contents:
+    from tipoff.studies.mesh import page, stage
+
+    return Contents(
+        (Result(stage.STAGE.name, stage.run),),
+        (Section.of_stage(stage.STAGE, page.draw, "mesh", "Mesh", "Mesh", "view --mesh"),),
+    )
+
+
+ENTRY = Entry((), _load)

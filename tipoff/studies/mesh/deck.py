@@ -67,7 +67,7 @@ def _lines(scene: Scene, held: HeldRail, load: np.ndarray, answers: Answers) -> 
     frequencies = ", ".join(f"{value:.6g}" for value in answers.frequencies)
     loaded = np.flatnonzero(load)
     return [
-        f"** First rail of scene {scene.name}, in SI: m, N, kg, s. Written by tipoff mesh.",
+        f"** First rail of scene {scene.name}, in SI: m, N, kg, s. Written by tipoff view --mesh.",
         f"** {FORCE:g} N under the first pad. tipoff: the wall moves {1e6 * answers.deflection:.6g} um,",
         "** the mean of the displacements of the loaded nodes with their shares of the force.",
         f"** Lowest frequencies by tipoff: {frequencies} Hz.",

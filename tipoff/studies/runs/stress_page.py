@@ -1,15 +1,15 @@
 """Stress of the rails on the page: the peak of each condition, warnings, pictures."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tipoff.studies.render.document import Caption, Image, Notice, Part
+from tipoff.studies.render.document import Caption, Notice, Part
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.runs.results import ConditionRun
-from tipoff.workspace.words import counted
+from tipoff.studies.view import page as views_page
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -53,7 +53,7 @@ def shown(
     return [
         *map(Notice, warnings),
         replace(table, dense=True),
-        *(part for view in views for part in _pictures(view, folder)),
+        *(part for view in views for part in views_page.draw(view, folder)),
         *([] if views else [_how(command)]),
     ]
 
@@ -70,26 +70,6 @@ def _place(row: ConditionRun) -> str:
 
 def _rotation(row: ConditionRun) -> float | None:
     return row.largest_rotation_rad and math.degrees(row.largest_rotation_rad)
-
-
-def _pictures(view: "View", folder: Path) -> Iterator[Part]:
-    """The pictures of one condition, or the command that makes them."""
-    name = view.condition
-    yield (
-        f"Condition {name}: {counted(len(view.frames), 'frame')} for ParaView in `{view.collection}`. "
-        f"{view.without_pictures}"
-    )
-    if not view.pictures:
-        return
-    for kind in ("peak", "ejection"):
-        light, dark = (folder / view.pictures[key] for key in (kind, f"{kind}-dark"))
-        yield Image(light, f"{kind} of {name}", dark)
-    yield Caption(
-        f"Condition {name}, elements of {1e3 * view.element_size_m:g} mm, seen from the "
-        f"platform. Above: the instant of the peak stress. Below: the ejection. The rails are drawn "
-        f"with {view.factor:g} times their deformation, payload and pads to scale, so pads can "
-        "appear inside a rail."
-    )
 
 
 def _how(command: str) -> Caption:

@@ -1,12 +1,12 @@
-"""Result of ``tipoff sweeps``."""
+"""Result of ``tipoff sensitivity --sweep``."""
 
 from dataclasses import dataclass
 from typing import Annotated
 
 from tipoff.studies.populations.population import Answering
 from tipoff.studies.render.column import Column
+from tipoff.studies.sensitivity.options import Options
 from tipoff.studies.sweeps.knee import Growth
-from tipoff.studies.sweeps.options import Options
 
 Curve = tuple[float | None, ...]  # over the sizes; None if no case settled
 

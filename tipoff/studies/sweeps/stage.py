@@ -13,10 +13,10 @@ from tipoff.mechanics.run_limits import EXIT_WINDOW
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
+from tipoff.studies.sensitivity.options import ANGLES, FEWEST_ANGLES, Options
 from tipoff.studies.sweeps import burnout, factors, knee, sides
 from tipoff.studies.sweeps import figures as drawing
 from tipoff.studies.sweeps.factors import FACTORS, SHARES, Factor
-from tipoff.studies.sweeps.options import FEWEST, Options
 from tipoff.studies.sweeps.results import Curve, Launch, Sides, Sweeps, Swept
 from tipoff.workspace.progress import Board
 from tipoff.workspace.stage import Made, Stage
@@ -80,9 +80,9 @@ def _launch(
 ) -> tuple[Launch, Surrogate]:
     """All cases of one surrogate in one ensemble: the results of each factor, and the surrogate
     with the rail modes of its cases."""
-    directions = factors.angles(options.angles)
+    directions = factors.angles(options.sweep or ANGLES)
     found = population.run(study, NAME, model, factors.cases(errors, directions), _TOLERANCE)
-    count = len(SHARES) * options.angles
+    count = len(SHARES) * len(directions)
     until = leaves.time + 0.5 * EXIT_WINDOW if leaves and model.instant.at == EXIT else None
     made = Launch(
         stretch=stretch,
@@ -134,7 +134,7 @@ def _sides(
     largest impulse, on a coarser grid of directions."""
     if model.scene.contact is None:
         return (), [None] * len(errors)
-    directions = factors.angles(max(FEWEST, options.angles // _COARSER))
+    directions = factors.angles(max(FEWEST_ANGLES, (options.sweep or ANGLES) // _COARSER))
     rows = [row for factor in errors for row in factor.rows(factor.sizes, directions)]
     with Board("which walls", 1) as board:
         seen = sides.found(

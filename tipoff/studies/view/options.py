@@ -19,3 +19,22 @@ class Options:
             "--frames", metavar="N", min=2, help="Number of frames, evenly spread over the run."
         ),
     ] = 60
+
+
+@dataclass(frozen=True)
+class Asked:
+    """All options of the command: those of frames, and whether it shows the mesh instead."""
+
+    options: Options = Options()
+    mesh: Annotated[
+        bool, typer.Option("--mesh", help="Show the mesh of the rails, without a run.")
+    ] = False
+
+    def require_mesh(self) -> None:
+        """Raise SceneError for options of frames, which a mesh has none of."""
+        from tipoff.faults import Fault, SceneError
+
+        if self.options != Options():
+            given = str(self.options.condition or self.options.frames)
+            expected = "no --condition and no --frames with --mesh"
+            raise SceneError([Fault("--mesh", "option", given, expected)])

@@ -1,30 +1,36 @@
-"""The frames of a run for the terminal."""
+"""Stress and motion of one condition: its peak and its files, and on the page the pictures."""
 
 from pathlib import Path
 
-from tipoff.studies.render.document import Part
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.document import Caption, Image, Part
 from tipoff.studies.view.stage import View
+from tipoff.units import duration
+from tipoff.workspace.words import counted
 
 
-def terminal(found: View, out: Path) -> list[Part]:
-    """The largest stress of the run and its place, the frames, the exaggeration, and the files
-    below the folder ``out``."""
-    own = found.peak
-    place = ", ".join(f"{1e3 * value:.4g}" for value in own.place_m)
-    cells = (
-        ("condition", found.condition),
-        (Column("elements", "mm", "g", 1e3), found.element_size_m),
-        ("frames", len(found.frames)),
-        (Column("peak von Mises", "MPa", ".4g", 1e-6), own.stress_pa),
-        ("x, y, z (mm)", place),
-        ("rail", own.rail),
-        (Column("at", "ms", ".4g", 1e3), own.time_s),
-        (Column("exaggeration", form="g"), found.factor),
+def draw(found: View, folder: Path) -> list[Part]:
+    """What there is to see; the ``folder`` of the scene has the pictures."""
+    name, peak = found.condition, found.peak
+    place = ", ".join(f"{1e3 * value + 0.0:.4g}" for value in peak.place_m)
+    words = (
+        f"Condition {name}, elements of {1e3 * found.element_size_m:g} mm: "
+        f"{counted(len(found.frames), 'frame')} for ParaView in `{found.collection}`. Peak von Mises "
+        f"stress {1e-6 * peak.stress_pa:.4g} MPa at x, y, z = {place} mm, rail {peak.rail}, "
+        f"{duration(peak.time_s, 4)} after ignition. {found.without_pictures}"
     )
-    columns, row = zip(*cells)
-    files = [found.collection, *found.pictures.values()]
-    return [
-        Table(columns, [row]),
-        "\n".join(f"  {out / found.scene / path}" for path in files),
+    if not found.pictures:
+        return [words.rstrip()]
+    pictures = [
+        Image(
+            folder / found.pictures[kind],
+            f"{kind} of {name}",
+            folder / found.pictures[f"{kind}-dark"],
+        )
+        for kind in ("peak", "ejection")
     ]
+    explained = Caption(
+        "Pictures: seen from the platform, at the instant of the peak stress, and the ejection. The "
+        f"rails are drawn with {found.factor:g} times their deformation, payload and pads to scale, so "
+        "pads can appear inside a rail."
+    )
+    return [words.rstrip(), *pictures, explained]
