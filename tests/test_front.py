@@ -18,7 +18,7 @@ from tipoff.calibration import rail_compliance
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
 from tipoff.studies import cli
-from tipoff.studies.ensemble.options import Options
+from tipoff.studies.ensemble.options import EnsembleOptions
 from tipoff.workspace import disturbed
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -150,9 +150,9 @@ def test_an_ensemble_is_that_of_the_command(solvers, found):
     (_, cases, model, more) = solvers[-1]
     assert cases == uncertainty.load(scene.studies.errors, scene)
     assert cases.vary.keys() != uncertainty.load("paper", scene).vary.keys()
-    numerics = lowfi.Numerics.of_many(Options().tolerance)
+    numerics = lowfi.Numerics.of_many(EnsembleOptions().tolerance)
     assert (model, more["numerics"]) == ("compliant", numerics)
-    assert numerics != lowfi.Numerics(relative_tolerance=Options().tolerance)
+    assert numerics != lowfi.Numerics(relative_tolerance=EnsembleOptions().tolerance)
     tipoff.ensemble(scene, "paper", cells=12, sampling="sobol")
     (_, cases, _, more) = solvers[-1]
     assert cases == uncertainty.load("paper", scene, sampling="sobol")

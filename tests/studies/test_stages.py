@@ -240,7 +240,7 @@ def test_a_stored_result_is_one_of_the_present_settings_and_code(tmp_path):
     """Other code may have called its settings something else: that is no result, and no error
     either."""
     study = Study(scenes.load("tiny"), tmp_path, Settings())
-    asked = asdict(sweeps.Options())
+    asked = asdict(sweeps.SensitivityOptions())
     for found, known in (
         ({"asked": asked, "key": "of another scene"}, False),
         ({"asked": asked | {"turns": 3}, "key": "x"}, False),
@@ -250,7 +250,9 @@ def test_a_stored_result_is_one_of_the_present_settings_and_code(tmp_path):
     ):
         write_json(tmp_path / "sweeps.json", found)
         assert (
-            study.stored("sweeps", lambda result: sweeps.Options(**result["asked"]) and "right")
+            study.stored(
+                "sweeps", lambda result: sweeps.SensitivityOptions(**result["asked"]) and "right"
+            )
             is not None
         ) == known
     assert study.stored("limits", lambda result: "right") is None

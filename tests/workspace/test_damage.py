@@ -121,7 +121,7 @@ def test_pictures_of_a_view_that_were_altered_are_not_shown(study):
     found = view.View(
         **words, **numbers, frames=(), peak=peak, pictures={}, without_pictures="no pyvista"
     )
-    view.stage_of("phi15").run(study, view.Options("phi15", 2), lambda: (found, [picture]))
+    view.stage_of("phi15").run(study, view.ViewOptions("phi15", 2), lambda: (found, [picture]))
     assert view.stored(study) == [found]
     flip(picture, 3)
     assert view.stored(study) == []

@@ -1,7 +1,7 @@
 """Options of a study: a frozen dataclass that declares each of them once.
 
     @dataclass(frozen=True)
-    class Options:
+    class ClearancesOptions:
         cases: Annotated[int, between(100), typer.Option(metavar="N", help="Number of cases.")] = 1000
 
 The command has an option ``--cases``, the result file has ``cases``, and ``require`` checks the

@@ -7,14 +7,14 @@ A stage of a study is written like this:
         mass_kg: float
         rows: tuple[Row, ...]  # Row is another dataclass
 
-    def run(study: Study, options: Options = Options()) -> Made[Heavier]:
+    def run(study: Study, options: HeavierOptions = HeavierOptions()) -> Made[Heavier]:
         def make() -> tuple[Heavier, list[Path]]:
             ...
             return Heavier(mass, rows), files  # and what was written
 
         return STAGE.run(study, options, make)
 
-    STAGE = Stage("heavier", __name__, Options, result=Heavier)
+    STAGE = Stage("heavier", __name__, HeavierOptions, result=Heavier)
 
 ``run`` returns a ``Made`` with ``Heavier`` as its ``result``. Each tuple of dataclasses is also
 written as a CSV file. ``STAGE.stored(study)`` finds a result of the present scene, code and settings,

@@ -18,7 +18,7 @@ from tipoff.studies.commands.request import Request
 from tipoff.studies.commands.running import Output
 from tipoff.studies.populations.reading import Reading
 from tipoff.studies.question import Contents, Entry, Result, Section
-from validation.montecarlo.options import Cases, Options
+from validation.montecarlo.options import Cases, MontecarloOptions
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _DRAWS = 60  # of the reference, by the report
 
 
-def _answer(request: Request, options: Options) -> Output:
+def _answer(request: Request, options: MontecarloOptions) -> Output:
     from validation.montecarlo import page, stage, tails, tails_page
 
     _require(options)
@@ -41,7 +41,7 @@ def _answer(request: Request, options: Options) -> Output:
     return Output(document, lambda _: parts, request.out)
 
 
-def _require(options: Options) -> None:
+def _require(options: MontecarloOptions) -> None:
     """Raise SceneError for options that would have no effect, every fault listed."""
     from tipoff.faults import Fault, SceneError
     from tipoff.mechanics.model_names import SPRINGS
@@ -79,7 +79,7 @@ def _load() -> Contents:
             ),
             Result(
                 tails.NAME,
-                lambda study: tails.run(study, Options(draws=_DRAWS)),
+                lambda study: tails.run(study, MontecarloOptions(draws=_DRAWS)),
                 tails.STAGE.stored,
             ),
         ),
@@ -90,4 +90,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry((command("montecarlo", __doc__ or "", Options, _answer),), _load)
+ENTRY = Entry((command("montecarlo", __doc__ or "", MontecarloOptions, _answer),), _load)

@@ -34,7 +34,7 @@ class Cases:
 
 
 @dataclass(frozen=True)
-class Options:
+class MontecarloOptions:
     """``draws`` None: no run of the reference; ``fine`` None: a tenth of the draws, at least four."""
 
     population: Cases = Cases()

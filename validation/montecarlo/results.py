@@ -13,7 +13,7 @@ from tipoff.studies.populations.spread import Histogram, Moments, Quantile
 from tipoff.studies.render.column import Column
 from validation.montecarlo.allocation import Allocation
 from validation.montecarlo.control_variate import Estimate
-from validation.montecarlo.options import Cases, Options
+from validation.montecarlo.options import Cases, MontecarloOptions
 
 _MEDIAN, _MOST = Column("median error", "deg/s", ".2g"), Column("largest", "deg/s", ".2g")
 
@@ -234,7 +234,7 @@ class DrawnPairs:
 class Tails(Answering):
     """The population, checked by draws of the reference."""
 
-    asked: Options
+    asked: MontecarloOptions
     reading: str
     store: str
     cases: int

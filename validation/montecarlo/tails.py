@@ -21,7 +21,7 @@ from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
 from validation.montecarlo import cases, control_variate, paired_statistics, rungs
 from validation.montecarlo import stage as montecarlo
-from validation.montecarlo.options import FEWEST_FINE, Options
+from validation.montecarlo.options import FEWEST_FINE, MontecarloOptions
 from validation.montecarlo.paired_statistics import RATES, both_settled
 from validation.montecarlo.results import Cost, Tails
 
@@ -29,7 +29,7 @@ NAME = "tails"
 FEWEST = 10  # draws; fewer give no useful interval
 
 
-def run(study: Study, options: Options) -> Made[Tails]:
+def run(study: Study, options: MontecarloOptions) -> Made[Tails]:
     """Rates and tails, corrected by the reference.
 
     Raises SceneError for bad input, every fault listed, and StudyError where too few cases settle.
@@ -94,14 +94,16 @@ def run(study: Study, options: Options) -> Made[Tails]:
     return STAGE.run(study, options, make)
 
 
-def _inputs(study: Study, options: Options) -> Any:
+def _inputs(study: Study, options: MontecarloOptions) -> Any:
     return montecarlo.inputs(study, options.population)
 
 
-STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Tails)
+STAGE = Stage(NAME, __name__, options=MontecarloOptions, inputs=_inputs, result=Tails)
 
 
-def checked(study: Study, options: Options) -> tuple[list[exceedance.Limit], Derived | Drawn, int]:
+def checked(
+    study: Study, options: MontecarloOptions
+) -> tuple[list[exceedance.Limit], Derived | Drawn, int]:
     """Limits, cases, and the number of draws. Raises SceneError listing every fault."""
     asked = options.population
     return tuple(
@@ -113,7 +115,7 @@ def checked(study: Study, options: Options) -> tuple[list[exceedance.Limit], Der
     )
 
 
-def _draws(options: Options) -> int:
+def _draws(options: MontecarloOptions) -> int:
     faults, draws = [], options.draws or 0
     if not FEWEST <= draws <= options.population.cases:
         expected = f"{FEWEST} to {options.population.cases:,}, the number of cases"

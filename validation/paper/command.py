@@ -32,5 +32,5 @@ def paper(
     """
     from validation.paper import page, stage
 
-    found = stage.run(request.study(), stage.Options(starts))
+    found = stage.run(request.study(), stage.PaperOptions(starts))
     return Output.of(found, page.draw, request.out)

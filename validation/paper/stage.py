@@ -48,14 +48,14 @@ _WRITTEN = 1e-5  # relative: a scene file has nine digits of most numbers, six o
 
 
 @dataclass(frozen=True)
-class Options:
+class PaperOptions:
     """``starts`` searches for each stress, and the ``plan`` of each."""
 
     starts: int = 3
     plan: solutions.Plan = solutions.Plan()
 
 
-def run(study: Study, options: Options = Options()) -> Made[dict]:
+def run(study: Study, options: PaperOptions = PaperOptions()) -> Made[dict]:
     """The searches, the ranges of every input, and the best set with the printed tables; writes the
     best set as a scene, and every end and admissible point as netCDF.
 
@@ -203,7 +203,7 @@ def _differing(first, second, key: str = "") -> list[str]:
     return [] if first == second else [key]
 
 
-def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Search]:
+def _searches(study: Study, base: Scene, options: PaperOptions) -> list[solutions.Search]:
     """All searches in order, ``workers`` at a time; Ctrl-C ends the running ones and starts no
     other."""
     plans = [(stress, seed) for seed in range(options.starts) for stress in STRESSES]
@@ -243,7 +243,7 @@ def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Sea
     return [future.result() for future in pending]
 
 
-STAGE: Stage[dict] = Stage(NAME, __name__, options=Options)
+STAGE: Stage[dict] = Stage(NAME, __name__, options=PaperOptions)
 
 
 def with_present(study: Study, made: Made[dict]) -> Made[dict]:

@@ -26,7 +26,7 @@ _CONDITIONS = 3
 
 
 @dataclass(frozen=True)
-class Options:
+class RecoveryOptions:
     """Number of ``draws``, ``noise`` of a curve relative to its largest value, ``seed``."""
 
     draws: int = 20
@@ -34,7 +34,7 @@ class Options:
     seed: int = 0
 
 
-def run(study: Study, options: Options = Options()) -> Made[dict]:
+def run(study: Study, options: RecoveryOptions = RecoveryOptions()) -> Made[dict]:
     """``rows``: parameter, number of draws in which each interval contains the hidden value, number
     of draws that do not determine it, and the median half width (SI) of the others, None without
     any; ``held_out``: largest errors of the settled rates (deg/s) of a held-out condition, or of a
@@ -57,10 +57,10 @@ def run(study: Study, options: Options = Options()) -> Made[dict]:
     return STAGE.run(study, options, make)
 
 
-STAGE: Stage[dict] = Stage("recovery", __name__, options=Options)
+STAGE: Stage[dict] = Stage("recovery", __name__, options=RecoveryOptions)
 
 
-def _drawn(study: Study, options: Options) -> dict:
+def _drawn(study: Study, options: RecoveryOptions) -> dict:
     from tipoff import lowfi
     from validation.recovery.draws import drawn_and_fitted
 

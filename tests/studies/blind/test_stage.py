@@ -14,7 +14,7 @@ from tipoff.studies.agreement import distributions, refinement, verdicts
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.blind import page
 from tipoff.studies.blind import stage as blind
-from tipoff.studies.blind.stage import Options
+from tipoff.studies.blind.stage import CompareOptions
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.render import document
 from tipoff.workspace.settings import Settings, defaults
@@ -27,19 +27,19 @@ def study_of(name: str = "reference") -> Study:
 
 
 def test_seed_is_that_of_code_and_scene(monkeypatch):
-    own = blind.seed_of(study_of(), Options())
+    own = blind.seed_of(study_of(), CompareOptions())
     assert (
         own
-        == blind.seed_of(study_of(), Options())
-        != blind.seed_of(study_of("sensitive"), Options())
+        == blind.seed_of(study_of(), CompareOptions())
+        != blind.seed_of(study_of("sensitive"), CompareOptions())
     )
-    assert blind.seed_of(study_of(), Options(seed=3)) == 3
+    assert blind.seed_of(study_of(), CompareOptions(seed=3)) == 3
     monkeypatch.setattr(blind.sources, "digest", lambda *modules: "another line of code")
-    assert blind.seed_of(study_of(), Options()) != own
+    assert blind.seed_of(study_of(), CompareOptions()) != own
 
 
 def test_drawn_conditions_are_all_held_out():
-    drawn = blind.with_drawn_conditions(study_of(), Options(cases=3, seed=1))
+    drawn = blind.with_drawn_conditions(study_of(), CompareOptions(cases=3, seed=1))
     assert (
         list(drawn.conditions)
         == ["blind1", "blind2", "blind3"]
@@ -53,7 +53,7 @@ def test_drawn_conditions_are_all_held_out():
     assert len(hashes) == 3 and hashes.isdisjoint(
         scene.hash for scene in study_of().conditions.values()
     )
-    again = blind.with_drawn_conditions(study_of(), Options(cases=2, seed=1))
+    again = blind.with_drawn_conditions(study_of(), CompareOptions(cases=2, seed=1))
     assert [scene.hash for scene in again.conditions.values()] == [
         drawn.condition(name).hash for name in ("blind1", "blind2")
     ]
@@ -62,7 +62,7 @@ def test_drawn_conditions_are_all_held_out():
 def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
     """Mesh, step and cells on each. Control: a scene that refines one only has the others borrow, and
     says so."""
-    drawn = blind.with_drawn_conditions(study_of(), Options(cases=3, seed=1))
+    drawn = blind.with_drawn_conditions(study_of(), CompareOptions(cases=3, seed=1))
     alone = replace(drawn, scene=drawn.scene.replace({"agreement.refined": ["blind2"]}))
     monkeypatch.setattr(
         type(drawn.store), "fill", lambda store, title, runs: [flight() for _ in runs]
@@ -74,7 +74,7 @@ def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
 
 def test_unknown_distributions_are_refused():
     with pytest.raises(SceneError, match="one of"):
-        blind.with_drawn_conditions(study_of(), Options(vary="unheard"))
+        blind.with_drawn_conditions(study_of(), CompareOptions(vary="unheard"))
 
 
 class Cases:
@@ -127,7 +127,7 @@ def test_conditions_that_no_single_run_can_judge_are_judged_as_distributions(stu
     """As in the agreement study, and both models agree there. Control: a condition that 1 um and the
     mesh do not move stays a curve, without neighbours."""
     study, asked = stubbed
-    found = blind.run(study, Options(cases=3, seed=1, neighbours=32)).document
+    found = blind.run(study, CompareOptions(cases=3, seed=1, neighbours=32)).document
     for model in ("calibrated", "compliant"):
         assert [(row["condition"], row["judged_as"], row["judgement"]) for row in found[model]] == [
             ("blind1", "distribution", verdicts.AS_DISTRIBUTION),
@@ -150,7 +150,7 @@ def test_conditions_that_no_single_run_can_judge_are_judged_as_distributions(stu
 
 
 def test_the_number_of_neighbours_is_that_of_the_settings_unless_one_is_given(stubbed):
-    found = blind.run(stubbed[0], Options(cases=3, seed=1)).result
+    found = blind.run(stubbed[0], CompareOptions(cases=3, seed=1)).result
     assert [item.neighbours for item in found.distributions] == [5, 5]
     parts = page.draw(found)
     (figure,) = [part for part in parts if isinstance(part, document.Figure)]

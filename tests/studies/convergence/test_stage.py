@@ -10,7 +10,7 @@ from tipoff.faults import SceneError
 from tipoff.studies import registry
 from tipoff.studies.convergence import page as convergence_page
 from tipoff.studies.convergence import stage as convergence
-from tipoff.studies.convergence.options import Options
+from tipoff.studies.convergence.options import ConvergenceOptions
 from tipoff.studies.convergence.page import sentences
 from tipoff.studies.render import document
 from tipoff.studies.render.table import inline
@@ -119,7 +119,10 @@ def test_no_run_is_made_twice_and_none_again(study, asked):
     del asked[:]
     convergence.run(study)
     assert asked == []
-    assert convergence.run(study, Options("phi60")).result.condition == "phi60" and len(asked) == 11
+    assert (
+        convergence.run(study, ConvergenceOptions("phi60")).result.condition == "phi60"
+        and len(asked) == 11
+    )
 
 
 def test_four_meshes_of_the_reference():
@@ -162,13 +165,13 @@ def test_scene_without_contact_has_no_loads_and_no_interface_stiffness(tmp_path,
 
 def test_unknown_condition_is_refused_before_anything_runs(study, asked):
     with pytest.raises(SceneError, match="phi99"):
-        convergence.run(study, Options("phi99"))
+        convergence.run(study, ConvergenceOptions("phi99"))
     assert asked == []
 
 
 def test_stored_result_counts_only_while_nothing_changed(study):
     assert convergence.STAGE.stored(study) is None
-    found = convergence.run(study, Options("phi60"))
+    found = convergence.run(study, ConvergenceOptions("phi60"))
     assert convergence.STAGE.stored(study) == found
     assert convergence.STAGE.stored(Study(study.scene, study.folder, Settings())) is None
 

@@ -13,7 +13,7 @@ from tipoff.faults import SceneError
 from tipoff.studies.limits import certificate, page, stage
 from tipoff.studies.limits.certificate import Within
 from tipoff.studies.limits.constants import Margin
-from tipoff.studies.limits.options import Options
+from tipoff.studies.limits.options import LimitsOptions
 from tipoff.studies.limits.results import CertifiedFactor, Drawn, Limits
 from tipoff.studies.limits.search import Found, Trial
 from tipoff.studies.populations.exceedance import Limit
@@ -26,7 +26,7 @@ from tipoff.workspace.study import Study
 
 LIMIT = Limit("total", 6.0)
 TILT = math.radians(0.35)  # three sigma
-OPTIONS = Options(("6 deg/s",), probability=0.7, cases=200, certify=20)
+OPTIONS = LimitsOptions(("6 deg/s",), probability=0.7, cases=200, certify=20)
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +107,7 @@ def test_strata_by_the_largest_ratio_to_a_limit():
 def test_number_of_runs_that_would_certify():
     """The bound of that number is small enough, that of nine tenths is not, and few runs near the
     limits do not stay few. None where too many cases of the surrogate are above."""
-    options = Options(probability=0.99)
+    options = LimitsOptions(probability=0.99)
     counts = (20, 100, 9880)
     runs = certificate.needed(counts, Runs(3, 0), Runs(100, 0), options)
 

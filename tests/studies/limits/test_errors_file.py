@@ -12,7 +12,7 @@ from tipoff.scenes import halving, uncertainty
 from tipoff.studies.cli import app
 from tipoff.studies.limits import page, within
 from tipoff.studies.limits import stage as limits
-from tipoff.studies.limits.options import Options
+from tipoff.studies.limits.options import LimitsOptions
 from tipoff.studies.populations import exceedance
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render.document import terminal
@@ -58,7 +58,7 @@ def study(tmp_path_factory):
 @pytest.fixture(scope="module")
 def options(path):
     limit = f"{LIMIT} deg/s"
-    return Options(limits=(limit,), probability=PROBABILITY, cases=CASES, vary=path)
+    return LimitsOptions(limits=(limit,), probability=PROBABILITY, cases=CASES, vary=path)
 
 
 @pytest.fixture(scope="module")

@@ -22,7 +22,7 @@ from tipoff.studies.cli import app
 from tipoff.studies.limits import constants, search, within
 from tipoff.studies.limits import page as pictures
 from tipoff.studies.limits import stage as limits
-from tipoff.studies.limits.options import Options
+from tipoff.studies.limits.options import LimitsOptions
 from tipoff.studies.limits.within import ADVISED
 from tipoff.studies.populations import answers, exceedance
 from tipoff.studies.populations.population import Surrogate
@@ -32,7 +32,7 @@ from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
 
 LIMIT, PROBABILITY = 6.0, 0.9
-QUICK = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=120)
+QUICK = LimitsOptions(limits=("6 deg/s",), probability=PROBABILITY, cases=120)
 FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0)
 PER_UNIT = {
     "misalignment": np.radians(free_flight.RATE_PER_RADIAN),
@@ -179,7 +179,8 @@ def test_limits_that_no_tolerance_or_every_tolerance_keeps_are_reported(study, m
     )
     for others, state in (("scene", "none"), ("zero", "found")):
         found = of(
-            offset, Options(limits=("2 deg/s",), probability=PROBABILITY, cases=30, others=others)
+            offset,
+            LimitsOptions(limits=("2 deg/s",), probability=PROBABILITY, cases=30, others=others),
         )
         assert row_of(found, "misalignment").nominal.state == state and (found.map is None) == (
             state == "none"
@@ -192,7 +193,7 @@ def test_limits_that_no_tolerance_or_every_tolerance_keeps_are_reported(study, m
         "margin",
         lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), ""),
     )
-    far = of(offset, Options(limits=("x=1 deg/s",), probability=PROBABILITY, cases=30))
+    far = of(offset, LimitsOptions(limits=("x=1 deg/s",), probability=PROBABILITY, cases=30))
     row = row_of(far, "misalignment")
     assert row.nominal.state == "all" and row.model.state == "lost"
     assert "all" in pictures.value(row.nominal) and "model error" in pictures.value(row.model)
@@ -234,7 +235,7 @@ def searches(study, options):
 @pytest.mark.parametrize("vary, beside", [(None, 0.2), ("paper", 1.0)])
 def test_the_advice_of_the_paper_stands_beside_its_set_alone(study, monkeypatch, vary, beside):
     """Beside the tolerances of a file stand those that it states, once each."""
-    options = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=30, vary=vary)
+    options = LimitsOptions(limits=("6 deg/s",), probability=PROBABILITY, cases=30, vary=vary)
     monkeypatch.setattr(within.CasesAtScale, "values", lambda *_: np.zeros((30, len(answers.ALL))))
     monkeypatch.setattr(limits.Search, "pairs", lambda *_: None)
     found = searches(study, options).all()

@@ -133,7 +133,7 @@ def test_a_result_is_current_as_long_as_its_logs_are(tmp_path, fitted, monkeypat
     undrawn(monkeypatch)
     monday, tuesday = _tests_in(tmp_path, "monday", "tuesday")
     study = Study(load("reference"), tmp_path / "reference", Settings())
-    made = stage.run(study, stage.Options((monday, tuesday), cases=60, model="springs"))
+    made = stage.run(study, stage.MeasuredOptions((monday, tuesday), cases=60, model="springs"))
     found = made.document
     assert [row["test"] for row in found["tests"]] == ["monday/log", "tuesday/log"]
     for row, path in zip(found["tests"], (monday, tuesday)):  # groups of groups
@@ -148,7 +148,7 @@ def test_a_result_is_current_as_long_as_its_logs_are(tmp_path, fitted, monkeypat
     assert stage.STAGE.stored(study) == made
     tuesday.rename(moved)
     assert stage.STAGE.stored(study) is None
-    renamed = stage.run(study, stage.Options((monday, moved), cases=60, model="springs"))
+    renamed = stage.run(study, stage.MeasuredOptions((monday, moved), cases=60, model="springs"))
     assert [row.test for row in renamed.result.tests] == ["log", "other"]
     assert renamed.key != made.key
     assert stage.STAGE.stored(study) == renamed

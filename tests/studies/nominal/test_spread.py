@@ -133,10 +133,10 @@ def test_errors_are_inherited_and_read_beside_the_scene_file(tmp_path):
 
 def test_an_ensemble_without_a_file_draws_the_errors_of_the_scene(tilted, tmp_path):
     """Control: a scene without errors draws those of the paper."""
-    asked, _ = ensemble.request(study(tilted, tmp_path), ensemble.Options())
+    asked, _ = ensemble.request(study(tilted, tmp_path), ensemble.EnsembleOptions())
     assert asked.source.keys == ["thrust_offset.misalignment.axial"] and asked.source.asked == 10
     plain = tilted.replace({"studies": None})
-    asked, _ = ensemble.request(study(plain, tmp_path), ensemble.Options())
+    asked, _ = ensemble.request(study(plain, tmp_path), ensemble.EnsembleOptions())
     assert len(asked.source.keys) == 6
 
 

@@ -24,7 +24,7 @@ from tipoff.studies.render import document
 from tipoff.studies.runs import page
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.results import ConditionRun
-from tipoff.studies.sensitivity.options import Options
+from tipoff.studies.sensitivity.options import SensitivityOptions
 from tipoff.studies.single import single
 from tipoff.studies.single.text import Detail
 from tipoff.studies.sweeps import stage as sweeps
@@ -132,7 +132,7 @@ def test_a_sweep_compares_with_a_free_payload_at_the_same_instant(tmp_path):
     scene, found = burning(), {}
     study = Study(scene, tmp_path, Settings(workers=1))
     for at in ("exit", "settled"):
-        plain = sweeps.run(study, Options(sweep=8, at=at))
+        plain = sweeps.run(study, SensitivityOptions(sweep=8, at=at))
         launch = plain.result.launches[0]
         swept = next(each for each in launch.factors if each.name == "thrust_eccentricity")
         name = answers.TOTAL_RATE.name

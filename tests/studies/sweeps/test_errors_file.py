@@ -11,7 +11,7 @@ from tipoff.faults import SceneError
 from tipoff.scenes import load
 from tipoff.studies.cli import app
 from tipoff.studies.render.document import terminal
-from tipoff.studies.sensitivity.options import Options
+from tipoff.studies.sensitivity.options import SensitivityOptions
 from tipoff.studies.sweeps import factors, page
 from tipoff.studies.sweeps import stage as sweeps
 from tipoff.workspace.settings import Settings
@@ -81,7 +81,7 @@ def test_rates_of_a_free_payload_over_the_sizes_of_the_file(tmp_path, monkeypatc
     monkeypatch.setattr(sweeps.drawing, "figures", lambda _: [])
     study = Study(free_flight.scene(), tmp_path / "out", Settings(workers=1))
     vary = written(tmp_path, POLAR + MASS)
-    found = sweeps.run(study, Options(vary=vary, sweep=8)).result
+    found = sweeps.run(study, SensitivityOptions(vary=vary, sweep=8)).result
     for launch in found.launches:
         (factor,) = launch.factors
         exact = 1e-3 * free_flight.RATE_PER_METRE * np.array(factor.sizes)
@@ -95,7 +95,7 @@ def test_rates_of_a_free_payload_over_the_sizes_of_the_file(tmp_path, monkeypatc
     other = sweeps.run(study, Options(angles=8)).result
     assert not other.held and "not swept" not in terminal(page.draw(other))
     written(tmp_path, POLAR.replace("0.2 mm", "0.4 mm"))
-    again = sweeps.run(study, Options(vary=vary, sweep=8)).result
+    again = sweeps.run(study, SensitivityOptions(vary=vary, sweep=8)).result
     assert again.launches[0].factors[0].sizes[-1] == 1.5
 
 

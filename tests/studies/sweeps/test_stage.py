@@ -14,7 +14,7 @@ from tipoff.scenes.effects import thrust_offset
 from tipoff.studies.cli import app
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
-from tipoff.studies.sensitivity.options import Options
+from tipoff.studies.sensitivity.options import SensitivityOptions
 from tipoff.studies.sweeps import burnout, factors, sides
 from tipoff.studies.sweeps import page as sections
 from tipoff.studies.sweeps import stage as sweeps
@@ -54,7 +54,7 @@ def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path,
         tmp_path / "reference",
         Settings(workers=1),
     )
-    found = sweeps.run(study, Options(sweep=8)).result
+    found = sweeps.run(study, SensitivityOptions(sweep=8)).result
     for launch in found.launches:
         assert launch.cases == {"asked": 240, "ok": 240, "refused": 0, "failed": 0}
         assert launch.not_settled == 0

@@ -27,7 +27,7 @@ from tipoff.studies.runs import stress_page as section
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.view import frames, vtk_files
 from tipoff.studies.view import stage as view
-from tipoff.studies.view.options import Options
+from tipoff.studies.view.options import ViewOptions
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
 
@@ -42,7 +42,7 @@ def viewed(tmp_path_factory):
         study = Study(
             scenes.load("tiny"), tmp_path_factory.mktemp("out") / "tiny", defaults("tiny")
         )
-        yield study, view.run(study, Options("phi15", 7))
+        yield study, view.run(study, ViewOptions("phi15", 7))
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +57,7 @@ def test_without_pyvista_there_are_files_and_a_way_to_pictures(viewed):
     found = made.document
     assert found["pictures"] == {} and "pip install pyvista" in found["without_pictures"]
     assert len(found["frames"]) == 7 and len(found["files"]) == 2 * 7 + 2  # run.pvd, table
-    assert view.run(study, Options("phi15", 7)) == made  # nothing changed, nothing made
+    assert view.run(study, ViewOptions("phi15", 7)) == made  # nothing changed, nothing made
     assert view.stored(study) == [made.result]
 
 

@@ -22,7 +22,7 @@ from tipoff.mechanics.outcome import Outcome
 from tipoff.studies.limits import page as limits_page
 from tipoff.studies.limits import stage as limits
 from tipoff.studies.limits import within
-from tipoff.studies.limits.options import Options as Limits
+from tipoff.studies.limits.options import MontecarloOptions as Limits
 from tipoff.studies.populations import draws, population
 from tipoff.studies.populations.draws import Kept
 from tipoff.studies.populations.population import Surrogate
@@ -32,7 +32,7 @@ from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
 from validation.montecarlo import page, rungs, tails, tails_page
 from validation.montecarlo import stage as montecarlo
-from validation.montecarlo.options import Cases, Options
+from validation.montecarlo.options import Cases, MontecarloOptions
 
 WALLS = handmade(REFERENCE, {})
 HELD = 5  # modes of each rail
@@ -163,7 +163,7 @@ def test_pairs_and_their_cost_have_the_modes_of_the_population(study, watch):
     runs = watch(3, 7)
     montecarlo.run(study, OPTIONS)
     runs.modes.clear()
-    found = read(tails, study, Options(OPTIONS, 10))
+    found = read(tails, study, MontecarloOptions(OPTIONS, 10))
     assert runs.pilots == pilot.PILOT, "the choice is in the store of the population"
     assert runs.single == [3] * 10 and set(runs.modes) == {3}, "pairs, and cases that are timed"
     assert found.modes == 3 and found.modes_why.startswith("3: ")
@@ -179,7 +179,7 @@ def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, w
     monkeypatch.setattr(rungs, "execute", lambda run: ran(took[run.numerics.modes]))
     runs = watch(3)
     montecarlo.run(study, OPTIONS)
-    found = read(tails, study, Options(OPTIONS, 10))
+    found = read(tails, study, MontecarloOptions(OPTIONS, 10))
     beside, *further = (runs.single[begin : begin + 10] for begin in range(0, 90, 10))
     expected = [{AUTO}, {5}, {0}, {3}, {5}, {4}, {5}, {5}]  # the second with more clearance
     assert beside == [3] * 10 and [set(each) for each in further] == expected

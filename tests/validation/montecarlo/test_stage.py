@@ -22,9 +22,9 @@ from tipoff.workspace.study import Study, StudyError
 from validation.montecarlo import ENTRY
 from validation.montecarlo import page as pictures
 from validation.montecarlo import stage as montecarlo
-from validation.montecarlo.options import Cases as Options
+from validation.montecarlo.options import Cases as MontecarloOptions
 
-OPTIONS = Options(cases=1500, limits=("y=6 deg/s", "8 deg/s"))
+OPTIONS = MontecarloOptions(cases=1500, limits=("y=6 deg/s", "8 deg/s"))
 
 
 @pytest.fixture(scope="module")
@@ -137,7 +137,7 @@ def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(
         return run(*arguments)
 
     monkeypatch.setattr(population, "run", spoilt)
-    found = montecarlo.run(study, Options(cases=120, limits=("8 deg/s",))).result
+    found = montecarlo.run(study, MontecarloOptions(cases=120, limits=("8 deg/s",))).result
     row = found.readings[2]
     assert (
         row.settled == 1
@@ -148,13 +148,16 @@ def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(
     assert "1 settled" in html(pictures.draw(found))
     monkeypatch.setattr(population, "run", lambda *_: counted(120, slice(None)))
     with pytest.raises(StudyError, match="no case settled"):
-        montecarlo.run(study, Options(cases=120, seed=2, limits=("8 deg/s",)))
+        montecarlo.run(study, MontecarloOptions(cases=120, seed=2, limits=("8 deg/s",)))
     monkeypatch.setattr(population, "surrogate", lambda *_: counted(9, slice(0, 9)).model)
     touching = Study(load("reference"), study.folder, study.settings)
     # no springs calibrated
-    assert montecarlo.compared(touching, Options(cases=120), counted(120, slice(0, 9))) is None
+    assert (
+        montecarlo.compared(touching, MontecarloOptions(cases=120), counted(120, slice(0, 9)))
+        is None
+    )
     monkeypatch.setattr(montecarlo.calibrate, "stored", lambda _: {"key": "k"})
-    models = montecarlo.compared(touching, Options(cases=120), counted(120, slice(0, 9)))
+    models = montecarlo.compared(touching, MontecarloOptions(cases=120), counted(120, slice(0, 9)))
     assert models.both_settled == 0 and models.quantities == ()
     both = replace(found, models=models)
     assert "No case of 120 settled in both models" in html(pictures.draw(both))

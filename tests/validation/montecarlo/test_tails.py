@@ -19,10 +19,10 @@ from tipoff.workspace import store
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
 from validation.montecarlo import ENTRY, paired_statistics, tails, tails_page
-from validation.montecarlo.options import Cases, Options
+from validation.montecarlo.options import Cases, MontecarloOptions
 
 DRAWS = 10
-OPTIONS = Options(Cases(cases=120, limits=("y=6 deg/s", "8 deg/s")), DRAWS)
+OPTIONS = MontecarloOptions(Cases(cases=120, limits=("y=6 deg/s", "8 deg/s")), DRAWS)
 # of this solver's and that one's steps, deg/s of some ten
 ROUNDING = 1e-6
 

@@ -20,7 +20,7 @@ from validation.paper import stage as paper
 
 BASE = scenes.load("clamped")
 COUNT = len(inputs.UNKNOWNS)
-SMALL = paper.Options(
+SMALL = paper.PaperOptions(
     1, solutions.Plan(points=6, descents=1, pool=1, hops=1, kept=3, steps=(3, 2, 2))
 )
 
@@ -48,7 +48,7 @@ def stub(admissible: tuple[int, ...] = (2, 0)):
     return run
 
 
-def studied(folder: Path, run, options: paper.Options) -> dict:
+def studied(folder: Path, run, options: paper.PaperOptions) -> dict:
     """Result of the stage in ``folder``, with ``run`` in place of a search and figures that are not
     drawn."""
     with pytest.MonkeyPatch.context() as patch:

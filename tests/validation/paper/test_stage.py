@@ -266,7 +266,7 @@ def test_interrupt_ends_the_running_search_and_begins_no_other(tmp_path, monkeyp
     monkeypatch.setattr(solutions, "run", run)
     study = Study(BASE, tmp_path, Settings(workers=1))
     with pytest.raises(KeyboardInterrupt):
-        paper.run(study, paper.Options(2, SMALL.plan))
+        paper.run(study, paper.PaperOptions(2, SMALL.plan))
     while not ended and not finished:
         time.sleep(0.01)
     assert begun == ended == [(0.0, 0)] and not finished

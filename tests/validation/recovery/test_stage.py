@@ -30,7 +30,7 @@ def test_hidden_values_are_found_and_shown_in_one_draw(tmp_path, monkeypatch):
 
 def require_hidden_values(tmp_path, draws: int, least: int) -> None:
     study = Study(tiny(), tmp_path / "tiny", defaults("tiny"))
-    found = stage.run(study, stage.Options(draws=draws)).document
+    found = stage.run(study, stage.RecoveryOptions(draws=draws)).document
     assert [row["parameter"] for row in found["rows"]][:2] == list(stage.HIDDEN)
     for row in found["rows"]:
         assert row["covered_with_model_error"] == draws >= row["covered"] >= 0

@@ -13,7 +13,7 @@ from tipoff.studies.agreement import interface, judging, verdicts
 from tipoff.studies.agreement.candidates import Candidate, candidates, on_coarse
 from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.agreement.growth import Growth
-from tipoff.studies.agreement.options import Options
+from tipoff.studies.agreement.options import CompareOptions
 from tipoff.studies.agreement.verdicts import JudgedCondition
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace.progress import Board
@@ -79,7 +79,7 @@ class Agreement:
         return self.fitted + self.held_out
 
 
-def run(study: Study, options: Options | None = None) -> Made[Agreement]:
+def run(study: Study, options: CompareOptions | None = None) -> Made[Agreement]:
     """Judge the surrogates; default ``options``: those of the settings."""
     study.fitted()
     draws = (options and options.neighbours) or study.settings.neighbours
@@ -115,7 +115,7 @@ def run(study: Study, options: Options | None = None) -> Made[Agreement]:
             speedup_compliant=speeds[static.name],
         ), []
 
-    return STAGE.run(study, Options(draws), make)
+    return STAGE.run(study, CompareOptions(neighbours=draws), make)
 
 
 def current(study: Study) -> Made[Agreement]:
@@ -123,7 +123,7 @@ def current(study: Study) -> Made[Agreement]:
     if scene, code and settings are the present ones; otherwise a new one with few neighbours, whose
     runs take most of the time of a first report."""
     found = STAGE.stored(study)
-    few = Options(min(NEIGHBOURS_OF_A_REPORT, study.settings.neighbours))
+    few = CompareOptions(neighbours=min(NEIGHBOURS_OF_A_REPORT, study.settings.neighbours))
     return run(study, few if found is None else STAGE.asked(found.document))
 
 
@@ -134,11 +134,11 @@ def _elements(compliant: Candidate) -> dict | None:
     return max(known, key=lambda own: own["uncertainty"] or 0.0, default=None)
 
 
-def _inputs(study: Study, _: Options) -> list:
+def _inputs(study: Study, _: CompareOptions) -> list:
     return [calibrate.constants(study), asdict(verdicts.gates(study.scene))]
 
 
-STAGE = Stage("agreement", __name__, options=Options, inputs=_inputs, result=Agreement)
+STAGE = Stage("agreement", __name__, options=CompareOptions, inputs=_inputs, result=Agreement)
 
 
 def stored(study: Study) -> Agreement | None:

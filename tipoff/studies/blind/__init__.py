@@ -8,28 +8,26 @@ compares files of other codes.
   tipoff compare --blind 8
 """
 
-from tipoff.studies.blind.options import Options
+from tipoff.studies.agreement.options import CASES, CompareOptions
 from tipoff.studies.commands.declared import command
 from tipoff.studies.commands.request import Request
 from tipoff.studies.commands.running import Output
 from tipoff.studies.question import Contents, Entry, Result, Section
 
 
-def _answer(request: Request, asked: Options) -> Output:
+def _answer(request: Request, asked: CompareOptions) -> Output:
     if asked.cases is not None:
         from tipoff.studies.blind import page as drawn
         from tipoff.studies.blind import stage as blind
 
         return Output.of(blind.run(request.study(), asked), drawn.draw, request.out)
     from tipoff.studies.agreement import page, stage
-    from tipoff.studies.agreement.options import Options as OfScene
 
     _require(asked)
-    found = stage.run(request.study(), OfScene(asked.neighbours))
-    return Output.of(found, page.draw, request.out)
+    return Output.of(stage.run(request.study(), asked), page.draw, request.out)
 
 
-def _require(asked: Options) -> None:
+def _require(asked: CompareOptions) -> None:
     """Raise SceneError for options that would have no effect, every fault listed."""
     from tipoff.faults import Fault, SceneError
 
@@ -45,7 +43,6 @@ def _require(asked: Options) -> None:
 
 def _load() -> Contents:
     from tipoff.studies.blind import page, stage
-    from tipoff.studies.blind.options import CASES
 
     title, again = "Agreement on blind conditions", f"compare --blind {CASES}"
     return Contents(
@@ -54,4 +51,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry((command("compare", __doc__ or "", Options, _answer),), _load)
+ENTRY = Entry((command("compare", __doc__ or "", CompareOptions, _answer),), _load)

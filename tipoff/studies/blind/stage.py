@@ -17,8 +17,8 @@ from tipoff.studies.agreement import judging, verdicts
 from tipoff.studies.agreement.candidates import calibrated, compliant
 from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.agreement.growth import Growth
+from tipoff.studies.agreement.options import CASES, CompareOptions
 from tipoff.studies.agreement.verdicts import Gates, JudgedCondition
-from tipoff.studies.blind.options import CASES, Options
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace.stage import Made, Stage
 from tipoff.workspace.study import Study
@@ -34,7 +34,7 @@ class Blind:
     the distributions ``errors``: a file, or its name in the catalogue; ``sizes``: 95 % of the values of each
     tolerance (``scenes.halving``)."""
 
-    asked: Options
+    asked: CompareOptions
     errors: str
     sizes: dict[str, str]
     seed: int
@@ -48,7 +48,7 @@ class Blind:
     distributions: tuple[Distribution, ...]
 
 
-def run(study: Study, options: Options = Options()) -> Made[Blind]:
+def run(study: Study, options: CompareOptions = CompareOptions()) -> Made[Blind]:
     """The verdicts on drawn conditions."""
     drawn = with_drawn_conditions(study, options)
     compared = [calibrated(study), compliant(drawn, drawn.conditions)]
@@ -74,7 +74,7 @@ def run(study: Study, options: Options = Options()) -> Made[Blind]:
     return STAGE.run(study, options, make)
 
 
-def with_drawn_conditions(study: Study, options: Options) -> Study:
+def with_drawn_conditions(study: Study, options: CompareOptions) -> Study:
     """The study of the drawn conditions, in the same folder. All are held out. Each has its own
     floor and refinements, because another condition may be chaotic."""
     source = _drawn(study, options)
@@ -91,7 +91,7 @@ def with_drawn_conditions(study: Study, options: Options) -> Study:
     return replace(study, scene=study.scene.replace({"conditions": conditions, **roles}), only=())
 
 
-def _drawn(study: Study, options: Options) -> Drawn:
+def _drawn(study: Study, options: CompareOptions) -> Drawn:
     return Drawn(
         uncertainty.load(
             uncertainty.chosen(options.vary, study.scene),
@@ -103,7 +103,7 @@ def _drawn(study: Study, options: Options) -> Drawn:
     )
 
 
-def seed_of(study: Study, options: Options) -> int:
+def seed_of(study: Study, options: CompareOptions) -> int:
     """The seed of the draws."""
     return (
         options.seed
@@ -112,9 +112,9 @@ def seed_of(study: Study, options: Options) -> int:
     )
 
 
-def _inputs(study: Study, options: Options) -> list:
+def _inputs(study: Study, options: CompareOptions) -> list:
     conditions = with_drawn_conditions(study, options).scene.conditions
     return [conditions, calibrate.constants(study), asdict(verdicts.gates(study.scene))]
 
 
-STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Blind)
+STAGE = Stage(NAME, __name__, options=CompareOptions, inputs=_inputs, result=Blind)

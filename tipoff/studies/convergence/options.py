@@ -6,7 +6,7 @@ from tipoff.studies.commands.options import RefinedCondition
 
 
 @dataclass(frozen=True)
-class Options:
+class ConvergenceOptions:
     """``condition`` None: the first refined one of the scene, or else the first one."""
 
     condition: RefinedCondition = None

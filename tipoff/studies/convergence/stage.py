@@ -19,7 +19,7 @@ from tipoff.studies.agreement import equal_accuracy, interface, refinement, verd
 from tipoff.studies.agreement.candidates import compliant
 from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
 from tipoff.studies.convergence import contact_loads, statics, stresses
-from tipoff.studies.convergence.options import Options
+from tipoff.studies.convergence.options import ConvergenceOptions
 from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
 from tipoff.studies.render.column import Column
 from tipoff.workspace.progress import Board
@@ -108,7 +108,7 @@ class Convergence:
         ]
 
 
-def run(study: Study, options: Options | None = None) -> Made[Convergence]:
+def run(study: Study, options: ConvergenceOptions | None = None) -> Made[Convergence]:
     """The error of the reference. Raises SceneError for an unknown condition, StudyError if a
     mesh or a step fails."""
     given = options and options.condition

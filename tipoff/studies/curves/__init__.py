@@ -10,7 +10,7 @@ A file is one of: {formats of curves}. It has time from ignition, rate_x, rate_y
 absent. --columns names other columns, and --units gives units that the file does not state.
 """
 
-from tipoff.studies.curves.options import Options
+from tipoff.studies.curves.options import CurvesOptions
 from tipoff.studies.question import Question
 
-QUESTION = Question(__name__, __doc__, "Curves of other codes", "Curves", Options)
+QUESTION = Question(__name__, __doc__, "Curves of other codes", "Curves", CurvesOptions)

@@ -14,7 +14,7 @@ from tipoff.studies.commands.options import (
 
 
 @dataclass(frozen=True)
-class Options:
+class CurvesOptions:
     """``files`` None: a fault; ``condition`` None: the scene itself; ``model`` None: only files."""
 
     files: Annotated[

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from tipoff.studies.curves.options import Options
+from tipoff.studies.curves.options import CurvesOptions
 from tipoff.studies.render.column import Column
 
 Rates = tuple[float, float, float]
@@ -51,7 +51,7 @@ class Compared:
     """Curves by name, the first of them the ``reference``; ``condition`` of the runs of tipoff."""
 
     scene: str
-    asked: Options
+    asked: CurvesOptions
     condition: str | None
     reference: str
     rows: tuple[CurveDifference, ...]

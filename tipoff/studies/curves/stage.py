@@ -16,7 +16,7 @@ from tipoff.scenes.names import NOMINAL
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.commands.running import quantity
 from tipoff.studies.curves import page
-from tipoff.studies.curves.options import Options
+from tipoff.studies.curves.options import CurvesOptions
 from tipoff.studies.curves.results import Channel, Compared, CurveDifference, Drawn
 from tipoff.studies.render.document import with_figures
 from tipoff.workspace import models as known
@@ -36,7 +36,7 @@ _DIFFERENCES = (  # fields of CurveDifference that are fields of a Difference
 )
 
 
-def run(study: Study, options: Options = Options()) -> Made[Compared]:
+def run(study: Study, options: CurvesOptions = CurvesOptions()) -> Made[Compared]:
     """The differences from the files. Raises SceneError listing every fault of every file."""
     curves, _ = together(lambda: _of_files(options), lambda: _require(study, options))
     requests = _requests(study, options)
@@ -53,15 +53,15 @@ def run(study: Study, options: Options = Options()) -> Made[Compared]:
     return STAGE.run(study, options, make)
 
 
-def _inputs(study: Study, options: Options) -> list:
+def _inputs(study: Study, options: CurvesOptions) -> list:
     sources = [item.source for item in _of_files(options).values()]
     return [sources, [request.key for request in _requests(study, options).values()]]
 
 
-STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Compared)
+STAGE = Stage(NAME, __name__, options=CurvesOptions, inputs=_inputs, result=Compared)
 
 
-def _of_files(options: Options) -> dict[str, Curves]:
+def _of_files(options: CurvesOptions) -> dict[str, Curves]:
     """The curves of the files by name. Raises SceneError."""
     pairs = [_named(text) for text in options.files or ()]
     names = [name for name, _ in pairs]
@@ -88,7 +88,7 @@ def _of_files(options: Options) -> dict[str, Curves]:
     return found
 
 
-def _settled_from(options: Options) -> float | None:
+def _settled_from(options: CurvesOptions) -> float | None:
     return quantity("--settled-from", options.settled_from, "s", "44 ms")
 
 
@@ -98,7 +98,7 @@ def _named(text: str) -> tuple[str, str]:
     return (name.strip(), path) if equals else (Path(text).name, text)
 
 
-def _require(study: Study, options: Options) -> None:
+def _require(study: Study, options: CurvesOptions) -> None:
     """Raise SceneError for an unknown model or condition, and for options of runs without one."""
     if options.condition:
         study.condition(options.condition)
@@ -120,7 +120,7 @@ def _require(study: Study, options: Options) -> None:
         )
 
 
-def _requests(study: Study, options: Options) -> dict[str, Run]:
+def _requests(study: Study, options: CurvesOptions) -> dict[str, Run]:
     """The runs of tipoff by name. Raises SceneError."""
     models = tuple(dict.fromkeys(options.model or ()))
     name = options.condition or NOMINAL
@@ -155,7 +155,7 @@ def _fitted(
     return found
 
 
-def compared(scene: str, options: Options, found: dict[str, Curves]) -> Compared:
+def compared(scene: str, options: CurvesOptions, found: dict[str, Curves]) -> Compared:
     """The result of curves by name; the first is the reference."""
     reference, *others = found
     differences = {name: metrics.compare(found[reference], found[name]) for name in others}

@@ -38,11 +38,11 @@ change by clearance is 0 for a case without contact.
 from tipoff.studies.commands.declared import command
 from tipoff.studies.commands.request import Request
 from tipoff.studies.commands.running import Output
-from tipoff.studies.ensemble.options import Options
+from tipoff.studies.ensemble.options import EnsembleOptions
 from tipoff.studies.question import Entry
 
 
-def _answer(request: Request, options: Options) -> Output:
+def _answer(request: Request, options: EnsembleOptions) -> Output:
     from tipoff.studies.ensemble import page, stage
     from tipoff.workspace import models
 
@@ -56,4 +56,4 @@ def _answer(request: Request, options: Options) -> Output:
     return Output(one.plain, lambda _: page.case(one))
 
 
-ENTRY = Entry((command("ensemble", __doc__, Options, _answer),))
+ENTRY = Entry((command("ensemble", __doc__, EnsembleOptions, _answer),))

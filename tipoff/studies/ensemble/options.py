@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Options:
+class EnsembleOptions:
     """None: from the file of distributions, or the default. The file is ``vary``, or the errors
     that the scene states, or the errors of the paper."""
 

@@ -30,7 +30,7 @@ from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.ensemble import halves, sensitivity, summary
 from tipoff.studies.ensemble.halves import Halved
-from tipoff.studies.ensemble.options import Options
+from tipoff.studies.ensemble.options import EnsembleOptions
 from tipoff.studies.ensemble.sensitivity import Sensitivity
 from tipoff.studies.ensemble.summary import Statistics
 from tipoff.studies.populations import exceedance, population
@@ -107,7 +107,7 @@ class One:
         return found | whole | run.outcome._asdict()
 
 
-def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
+def request(study: Study, options: EnsembleOptions) -> tuple[Ensemble, Path]:
     """The ensemble of the ``options``, and the folder of its store: the given one, or by default a
     separate one for every ensemble. The number of modes is that of the store, or pilot cases choose
     it. Raises SceneError for bad input, before any rail compliance is computed, and StudyError where
@@ -163,7 +163,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
     return ensemble, path
 
 
-def run(study: Study, options: Options) -> Ran:
+def run(study: Study, options: EnsembleOptions) -> Ran:
     """Run the cases that the store lacks, then their twins if the sensitivity is requested. Returns
     the statistics, also written as ``ensemble.json``. Raises StudyError when the store fails."""
     limits = exceedance.limits(options.limits)
@@ -242,14 +242,19 @@ def _export(study: Study, store: Store, export: tuple[str, Path]) -> None:
     )
 
 
-def _instant(ensemble: Ensemble, options: Options) -> Instant:
+def _instant(ensemble: Ensemble, options: EnsembleOptions) -> Instant:
     """The instant of the statistics: the one asked for, or by one run of the scene."""
     own = None if options.at else ensemble.nominal().outcome.impulse_after_exit
     return instant.chosen(options.at, own)
 
 
 def _filled(
-    study: Study, ensemble: Ensemble, store: Store, options: Options, board: Board, cause: str = ""
+    study: Study,
+    ensemble: Ensemble,
+    store: Store,
+    options: EnsembleOptions,
+    board: Board,
+    cause: str = "",
 ) -> Cost:
     """Run the cases that a store lacks; ``cause`` in words for twins."""
     label = counted(store.asked, "case") + (cause and f", {cause}")
@@ -268,7 +273,7 @@ def _filled(
 
 
 def _sensitivity(
-    study: Study, ensemble: Ensemble, store: Store, options: Options, board: Board
+    study: Study, ensemble: Ensemble, store: Store, options: EnsembleOptions, board: Board
 ) -> Sensitive | None:
     """How far the twins of the cases differ, and the cost of each; None if not requested."""
     if not options.sensitivity:
@@ -286,7 +291,7 @@ def _halves(
     study: Study,
     ensemble: Ensemble,
     store: Store,
-    options: Options,
+    options: EnsembleOptions,
     board: Board,
     at: Instant,
     limits: list[Limit],
@@ -313,13 +318,13 @@ def _limit(study: Study) -> float:
     return verdicts.gates(study.scene).settled_rate_error_deg_s
 
 
-def _agreement(study: Study, options: Options) -> str:
+def _agreement(study: Study, options: EnsembleOptions) -> str:
     chosen = options.chosen
     fitted = constants(chosen.calibration, chosen.model, study.scene.name)
     return kept.words(study, chosen.model, None, fitted, chosen.asked)
 
 
-def case(study: Study, options: Options, number: int) -> One:
+def case(study: Study, options: EnsembleOptions, number: int) -> One:
     """One case run alone. Raises SceneError for a case that does not exist, and StudyError when the
     store fails."""
     ensemble, path = request(study, options)

@@ -15,7 +15,7 @@ values of the table:
   tipoff flight --scene my_launcher.toml --set flight.altitude="600 km" --set flight.elevation="90 deg"
 """
 
-from tipoff.studies.flight.options import Asked
+from tipoff.studies.flight.options import FlightCommand
 from tipoff.studies.question import Question
 
-QUESTION = Question(__name__, __doc__, "After separation", "Flight", Asked)
+QUESTION = Question(__name__, __doc__, "After separation", "Flight", FlightCommand)

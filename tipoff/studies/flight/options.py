@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Options:
+class FlightOptions:
     """``vary`` None: errors of the scene; ``cases`` None: those of the file; ``model`` None:
     the default."""
 
@@ -26,12 +26,12 @@ class Options:
 
 
 @dataclass(frozen=True)
-class Asked:
+class FlightCommand:
     """All options of the command: conditions, and those of the study."""
 
     condition: Conditions = None
-    options: Options = Options()
+    options: FlightOptions = FlightOptions()
 
-    def asked(self, request: "Request") -> "tuple[Study, Options]":
+    def asked(self, request: "Request") -> "tuple[Study, FlightOptions]":
         """The study of a ``request``, and the options of its stage. Raises SceneError."""
         return request.study(self.condition), self.options

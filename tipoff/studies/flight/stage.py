@@ -13,7 +13,7 @@ from tipoff.scenes import halving, uncertainty
 from tipoff.scenes.effects.registry import body_forces
 from tipoff.scenes.variation import Variations
 from tipoff.studies.flight import bodies, curves, flown, summary
-from tipoff.studies.flight.options import Options
+from tipoff.studies.flight.options import FlightOptions
 from tipoff.studies.flight.results import Condition, Curves, Flight
 from tipoff.studies.populations import population
 from tipoff.studies.populations.population import Population
@@ -25,7 +25,7 @@ from tipoff.workspace.words import counted
 NAME = "flight"
 
 
-def run(study: Study, options: Options = Options()) -> Made[Flight]:
+def run(study: Study, options: FlightOptions = FlightOptions()) -> Made[Flight]:
     """The flight after the exit. Raises SceneError for a scene without ``[flight]``."""
     _require(study)
     changed = {} if options.cases is None else {"cases": options.cases}
@@ -62,7 +62,7 @@ def run(study: Study, options: Options = Options()) -> Made[Flight]:
     return STAGE.run(study, options, make)
 
 
-def _inputs(study: Study, options: Options) -> list:
+def _inputs(study: Study, options: FlightOptions) -> list:
     """Tables of the flight and distributions. Raises SceneError if no flight is possible."""
     _require(study)
     tables = {
@@ -75,7 +75,7 @@ def _inputs(study: Study, options: Options) -> list:
     return [own, tables, varied, study.settings.element_size]
 
 
-STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Flight)
+STAGE = Stage(NAME, __name__, options=FlightOptions, inputs=_inputs, result=Flight)
 
 
 def _require(study: Study) -> None:
@@ -101,7 +101,7 @@ def _require(study: Study) -> None:
 
 
 def _conditions(
-    study: Study, options: Options
+    study: Study, options: FlightOptions
 ) -> tuple[list[Condition], list[Curves], flown.Flown | None, Columns | None]:
     """A row for every condition, curves of the first that settled, flights of all that settled, and
     their outcomes as arrays."""

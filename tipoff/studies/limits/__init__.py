@@ -10,7 +10,7 @@ tolerances are those of a file of errors, as multiples of their scatter.
   tipoff limits --limit "10 deg/s" --probability 0.95 --certify 200
 """
 
-from tipoff.studies.limits.options import Options
+from tipoff.studies.limits.options import LimitsOptions
 from tipoff.studies.question import Question
 
-QUESTION = Question(__name__, __doc__, "Tolerances that keep limits", "Tolerances", Options)
+QUESTION = Question(__name__, __doc__, "Tolerances that keep limits", "Tolerances", LimitsOptions)

@@ -16,7 +16,7 @@ import numpy as np
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.scene import Scene
-from tipoff.studies.limits.options import Options
+from tipoff.studies.limits.options import LimitsOptions
 from tipoff.studies.limits.within import SEED, CasesAtScale, Source, source
 from tipoff.studies.populations import draws, exceedance, stratified
 from tipoff.studies.populations.draws import Lost
@@ -69,7 +69,7 @@ class Certificate(Bound):
 
 
 def made(
-    study: Study, options: Options, limits: Sequence[Limit], cases: int, within: Within
+    study: Study, options: LimitsOptions, limits: Sequence[Limit], cases: int, within: Within
 ) -> Certificate:
     """The bound from ``options.certify`` runs of the reference, among ten times the ``cases`` of the
     search."""
@@ -130,7 +130,9 @@ def strata(rates: np.ndarray, limits: Sequence[Limit]) -> tuple[np.ndarray, ...]
     return tuple(np.flatnonzero(part) for part in (above, close & ~above, ~close))
 
 
-def needed(counts: tuple[int, int, int], near: Runs, far: Runs, options: Options) -> int | None:
+def needed(
+    counts: tuple[int, int, int], near: Runs, far: Runs, options: LimitsOptions
+) -> int | None:
     """The number of runs, allocated as above, that certifies the probability if no further one shows a
     rate above its limit; None where that of all ``counts`` cases does not."""
 

@@ -16,7 +16,7 @@ from tipoff.workspace.options import between
 
 
 @dataclass(frozen=True)
-class Options:
+class LimitsOptions:
     """``limits`` in the form of ``exceedance.limits``; ``cases`` None: ten times the fewest;
     ``condition`` None: the scene; ``certify`` None: no run of the reference; ``vary`` None: no file of
     errors; ``model`` and ``at`` None: the default."""

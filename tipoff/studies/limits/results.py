@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from tipoff.studies.limits.certificate import Certificate
 from tipoff.studies.limits.constants import Margin
-from tipoff.studies.limits.options import Options
+from tipoff.studies.limits.options import LimitsOptions
 from tipoff.studies.limits.search import Found
 from tipoff.studies.populations.answers import Named
 from tipoff.studies.populations.exceedance import Limit
@@ -83,7 +83,7 @@ class Drawn:
 class Limits(Answering):
     """Certified tolerances of a scene."""
 
-    asked: Options
+    asked: LimitsOptions
     limits: tuple[Limit, ...]
     probability: float
     confidence: float

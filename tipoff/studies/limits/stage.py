@@ -27,7 +27,7 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.limits import certificate, constants, search, within
 from tipoff.studies.limits.certificate import Certificate
-from tipoff.studies.limits.options import Options
+from tipoff.studies.limits.options import LimitsOptions
 from tipoff.studies.limits.results import (
     Advised,
     CertifiedFactor,
@@ -53,7 +53,7 @@ DRAWS = 8
 RAYS = 5  # rays between the axes of the map of two tolerances
 
 
-def run(study: Study, options: Options = Options()) -> Made[Limits]:
+def run(study: Study, options: LimitsOptions = LimitsOptions()) -> Made[Limits]:
     """The certified tolerances. Raises SceneError listing every fault of the input, and StudyError
     if the payload does not leave the rail even without errors."""
     (limits, cases), *_ = together(
@@ -80,7 +80,7 @@ def run(study: Study, options: Options = Options()) -> Made[Limits]:
     return STAGE.run(study, options, make)
 
 
-def _inputs(study: Study, options: Options) -> dict:
+def _inputs(study: Study, options: LimitsOptions) -> dict:
     margin = vars(constants.margin(study, options.model or COMPLIANT))
     if options.vary is None:
         return margin
@@ -95,10 +95,10 @@ def _errors(vary: str, scene: Scene) -> Uncertainty:
     return found
 
 
-STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Limits)
+STAGE = Stage(NAME, __name__, options=LimitsOptions, inputs=_inputs, result=Limits)
 
 
-def checked(options: Options) -> tuple[list[Limit], int]:
+def checked(options: LimitsOptions) -> tuple[list[Limit], int]:
     """Limits and number of cases. Raises SceneError listing every fault."""
     return tuple(together(lambda: _limits(options.limits), lambda: _cases(options)))
 
@@ -113,7 +113,7 @@ def _limits(texts: tuple[str, ...]) -> list[Limit]:
     return found
 
 
-def _cases(options: Options) -> int:
+def _cases(options: LimitsOptions) -> int:
     require(options)
     needed = order_statistics.runs_needed(options.probability, options.confidence)
     if options.cases is None:
@@ -133,7 +133,7 @@ class Search:
     def __init__(
         self,
         study: Study,
-        options: Options,
+        options: LimitsOptions,
         limits: list[Limit],
         cases: int,
         model: Surrogate,

@@ -19,7 +19,7 @@ The simulated cases have the random errors of the scene, or those of the paper w
 The logs of the package are simulated by a sensor model. All results mark them as simulated.
 """
 
-from tipoff.studies.measured.options import Options
+from tipoff.studies.measured.options import MeasuredOptions
 from tipoff.studies.question import Question
 
-QUESTION = Question(__name__, __doc__, "Measured logs", "Measured logs", Options)
+QUESTION = Question(__name__, __doc__, "Measured logs", "Measured logs", MeasuredOptions)

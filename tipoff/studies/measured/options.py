@@ -10,7 +10,7 @@ from tipoff.studies.commands.options import Surrogate, Vary, condition_names
 
 
 @dataclass(frozen=True)
-class Options:
+class MeasuredOptions:
     """``logs`` None: those of the package; ``condition`` None: the scene
     itself; ``model`` None: the default."""
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from tipoff.scenes.uncertainty import Varied
-from tipoff.studies.measured.options import Options
+from tipoff.studies.measured.options import MeasuredOptions
 from tipoff.studies.populations.population import Answering
 from tipoff.studies.populations.spread import Quantile
 from tipoff.studies.render.column import Column
@@ -208,7 +208,7 @@ class Measurements(Compared, Answering):
     file of all signals of drop tests, None without any."""
 
     scene: str
-    request: Options
+    request: MeasuredOptions
     errors: str
     sizes: dict[str, str]
     varied: Varied

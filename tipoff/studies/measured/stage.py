@@ -27,7 +27,7 @@ from tipoff.studies.measured.launch import compared as launched
 from tipoff.studies.measured.launch import prediction
 from tipoff.studies.measured.launch.analysis import Launched
 from tipoff.studies.measured.log import read
-from tipoff.studies.measured.options import Options
+from tipoff.studies.measured.options import MeasuredOptions
 from tipoff.studies.measured.reduction import COVERAGE
 from tipoff.studies.measured.results import (
     Compared,
@@ -54,7 +54,7 @@ _EVERY = 4  # curves of a result file hold every fourth sample
 _AROUND = 0.12  # s before and after ignition, where they hold all samples
 
 
-def run(study: Study, options: Options = Options()) -> Made[Measurements]:
+def run(study: Study, options: MeasuredOptions = MeasuredOptions()) -> Made[Measurements]:
     """Measured drops among predicted ones.
 
     Raises SceneError listing every fault of every log and of the distributions, StudyError if too
@@ -106,27 +106,29 @@ def run(study: Study, options: Options = Options()) -> Made[Measurements]:
     return STAGE.run(study, options, make)
 
 
-def _inputs(study: Study, options: Options) -> list:
+def _inputs(study: Study, options: MeasuredOptions) -> list:
     """Content of the logs and of the distributions. Raises SceneError for a missing or invalid
     file."""
     digests = [_digest(path) for path in options.logs or sheet.SAMPLES]
     return [digests, _drawn(study, options).uncertainty.resolved()]
 
 
-STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, field="request", result=Measurements)
+STAGE = Stage(
+    NAME, __name__, options=MeasuredOptions, inputs=_inputs, field="request", result=Measurements
+)
 
 
-def _drawn(study: Study, options: Options) -> Drawn:
+def _drawn(study: Study, options: MeasuredOptions) -> Drawn:
     return Drawn(
         uncertainty.load(_vary(study, options), _scene(study, options), cases=options.cases)
     )
 
 
-def _vary(study: Study, options: Options) -> str:
+def _vary(study: Study, options: MeasuredOptions) -> str:
     return uncertainty.chosen(options.vary, _scene(study, options))
 
 
-def _scene(study: Study, options: Options) -> Scene:
+def _scene(study: Study, options: MeasuredOptions) -> Scene:
     return study.condition(options.condition) if options.condition else study.scene
 
 

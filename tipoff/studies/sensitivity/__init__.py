@@ -26,10 +26,10 @@ from tipoff.studies.commands.declared import command
 from tipoff.studies.commands.request import Request
 from tipoff.studies.commands.running import Output
 from tipoff.studies.question import Contents, Entry, Result, Section
-from tipoff.studies.sensitivity.options import Options
+from tipoff.studies.sensitivity.options import SensitivityOptions
 
 
-def _answer(request: Request, asked: Options) -> Output:
+def _answer(request: Request, asked: SensitivityOptions) -> Output:
     asked.require_one()
     if asked.sweep is None:
         from tipoff.studies.sensitivity import page, stage
@@ -51,4 +51,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry((command("sensitivity", __doc__ or "", Options, _answer),), _load)
+ENTRY = Entry((command("sensitivity", __doc__ or "", SensitivityOptions, _answer),), _load)

@@ -15,7 +15,7 @@ FEWEST_ANGLES = 8  # smallest number of directions that separates the walls
 
 
 @dataclass(frozen=True)
-class Options:
+class SensitivityOptions:
     """``vary`` None: ``tolerances.DEFAULT``, or for sweeps every error up to 1 deg or mm; ``sweep`` None:
     ``ANGLES``, or none for ``tipoff sensitivity``; ``model`` and ``at`` None: the default."""
 
@@ -54,5 +54,5 @@ class Options:
         """Raise SceneError for --points with --sweep, which has none."""
         from tipoff.faults import Fault, SceneError
 
-        if self.sweep is not None and self.points != Options.points:
+        if self.sweep is not None and self.points != SensitivityOptions.points:
             raise SceneError([Fault("--points", "option", str(self.points), "none with --sweep")])

@@ -8,7 +8,7 @@ from tipoff.studies.populations.population import Answering
 from tipoff.studies.render.column import Column
 from tipoff.studies.sensitivity.contact_table import Deviations, PerturbedRun
 from tipoff.studies.sensitivity.indices import Indices
-from tipoff.studies.sensitivity.options import Options
+from tipoff.studies.sensitivity.options import SensitivityOptions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +86,6 @@ class Sensitivity(Answering):
     """``tables`` of the constants of the surrogate, and of the constants of the scene if a
     calibration changed them; none without contact."""
 
-    asked: Options
+    asked: SensitivityOptions
     tables: tuple[Constants, ...]
     sobol: Sobol

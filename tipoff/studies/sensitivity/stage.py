@@ -15,7 +15,7 @@ from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
 from tipoff.studies.sensitivity import contact_table, indices, tolerances
 from tipoff.studies.sensitivity.contact_table import PerturbedRun
-from tipoff.studies.sensitivity.options import HALVINGS, Options
+from tipoff.studies.sensitivity.options import HALVINGS, SensitivityOptions
 from tipoff.studies.sensitivity.results import (
     Constants,
     Sensitivity,
@@ -33,7 +33,7 @@ SEED = 1  # of the points and of the bootstrap
 _FINE = Numerics().relative_tolerance  # the tables show relative changes of a thousandth
 
 
-def run(study: Study, options: Options = Options()) -> Made[Sensitivity]:
+def run(study: Study, options: SensitivityOptions = SensitivityOptions()) -> Made[Sensitivity]:
     """What each input changes.
 
     Raises SceneError for bad input, before anything runs, and StudyError if the scene itself does
@@ -62,11 +62,11 @@ def run(study: Study, options: Options = Options()) -> Made[Sensitivity]:
     return STAGE.run(study, options, make)
 
 
-def _varied(study: Study, options: Options) -> str:
+def _varied(study: Study, options: SensitivityOptions) -> str:
     return tolerances.digest(options.vary or tolerances.DEFAULT)
 
 
-STAGE = Stage(NAME, __name__, options=Options, inputs=_varied, result=Sensitivity)
+STAGE = Stage(NAME, __name__, options=SensitivityOptions, inputs=_varied, result=Sensitivity)
 
 
 def tables(study: Study, model: Surrogate) -> list[Constants]:
@@ -111,7 +111,7 @@ def _table(study: Study, model: Surrogate) -> Constants:
     )
 
 
-def _sobol(study: Study, model: Surrogate, options: Options) -> tuple[Sobol, Surrogate]:
+def _sobol(study: Study, model: Surrogate, options: SensitivityOptions) -> tuple[Sobol, Surrogate]:
     """The indices, and the surrogate with the rail modes of the cases."""
     spread = tolerances.load(options.vary or tolerances.DEFAULT, model.scene, model.name)
     inputs = len(spread.inputs)
@@ -150,7 +150,9 @@ def _described(item: tolerances.Input) -> Varied:
     )
 
 
-def _shares(item: answers.Quantity, found: Population, inputs: int, options: Options) -> Shares:
+def _shares(
+    item: answers.Quantity, found: Population, inputs: int, options: SensitivityOptions
+) -> Shares:
     """Spread and indices of one quantity, and its indices from the first parts of the points."""
     values = item.of(found.results)
     sizes = [options.points >> halving for halving in range(HALVINGS, -1, -1)]

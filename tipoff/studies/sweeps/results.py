@@ -5,7 +5,7 @@ from typing import Annotated
 
 from tipoff.studies.populations.population import Answering
 from tipoff.studies.render.column import Column
-from tipoff.studies.sensitivity.options import Options
+from tipoff.studies.sensitivity.options import SensitivityOptions
 from tipoff.studies.sweeps.knee import Growth
 
 Curve = tuple[float | None, ...]  # over the sizes; None if no case settled
@@ -69,6 +69,6 @@ class Sweeps(Answering):
     """``launches``: the scene as given, and with a stretched thrust if this changes the impulse
     after the exit; ``held``: sizes by name of the tolerances of a file of errors that are not swept."""
 
-    asked: Options
+    asked: SensitivityOptions
     held: dict[str, str]
     launches: tuple[Launch, ...]

@@ -13,7 +13,7 @@ from tipoff.mechanics.run_limits import EXIT_WINDOW
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
-from tipoff.studies.sensitivity.options import ANGLES, FEWEST_ANGLES, Options
+from tipoff.studies.sensitivity.options import ANGLES, FEWEST_ANGLES, SensitivityOptions
 from tipoff.studies.sweeps import burnout, factors, knee, sides
 from tipoff.studies.sweeps import figures as drawing
 from tipoff.studies.sweeps.factors import FACTORS, SHARES, Factor
@@ -32,7 +32,7 @@ _COARSER = 5  # directions of the ensemble for each direction of the maps of wal
 _DEPARTS = 0.05
 
 
-def run(study: Study, options: Options = Options()) -> Made[Sweeps]:
+def run(study: Study, options: SensitivityOptions = SensitivityOptions()) -> Made[Sweeps]:
     """Rates over the size of each error. Raises SceneError for bad input, before anything runs."""
     errors = _swept_errors(study, options)
 
@@ -56,24 +56,24 @@ def run(study: Study, options: Options = Options()) -> Made[Sweeps]:
     return STAGE.run(study, options, make)
 
 
-def _swept_errors(study: Study, options: Options) -> tuple[Factor, ...]:
+def _swept_errors(study: Study, options: SensitivityOptions) -> tuple[Factor, ...]:
     return FACTORS if options.vary is None else factors.of_file(options.vary, study.scene)
 
 
-def _inputs(study: Study, options: Options) -> Any:
+def _inputs(study: Study, options: SensitivityOptions) -> Any:
     """The errors of a file with their largest sizes, and those that are held; None without one."""
     if options.vary is None:
         return None
     return _swept_errors(study, options), factors.held(options.vary, study.scene)
 
 
-STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Sweeps)
+STAGE = Stage(NAME, __name__, options=SensitivityOptions, inputs=_inputs, result=Sweeps)
 
 
 def _launch(
     study: Study,
     model: Surrogate,
-    options: Options,
+    options: SensitivityOptions,
     stretch: float,
     leaves: burnout.Exit | None,
     errors: tuple[Factor, ...],
@@ -128,7 +128,7 @@ def _swept(
 
 
 def _sides(
-    study: Study, model: Surrogate, options: Options, errors: tuple[Factor, ...]
+    study: Study, model: Surrogate, options: SensitivityOptions, errors: tuple[Factor, ...]
 ) -> tuple[tuple[str, ...], list[Sides | None]]:
     """Names of the faces, and for each factor the face that touched first and the one with the
     largest impulse, on a coarser grid of directions."""

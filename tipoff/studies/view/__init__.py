@@ -20,10 +20,10 @@ from tipoff.studies.commands.declared import command
 from tipoff.studies.commands.request import Request
 from tipoff.studies.commands.running import Output
 from tipoff.studies.question import Contents, Entry, Result
-from tipoff.studies.view.options import Asked
+from tipoff.studies.view.options import ViewCommand
 
 
-def _answer(request: Request, asked: Asked) -> Output:
+def _answer(request: Request, asked: ViewCommand) -> Output:
     study = request.study()
     if asked.mesh:
         asked.require_mesh()
@@ -44,4 +44,4 @@ def _load() -> Contents:
     return Contents((Result("view", stored=stage.stored),))
 
 
-ENTRY = Entry((command("view", __doc__ or "", Asked, _answer, ["workers"]),), _load)
+ENTRY = Entry((command("view", __doc__ or "", ViewCommand, _answer, ["workers"]),), _load)

@@ -9,7 +9,7 @@ from tipoff.studies.commands.options import RefinedCondition
 
 
 @dataclass(frozen=True)
-class Options:
+class ViewOptions:
     """``condition`` None: the first refined one."""
 
     condition: RefinedCondition = None
@@ -22,10 +22,10 @@ class Options:
 
 
 @dataclass(frozen=True)
-class Asked:
+class ViewCommand:
     """All options of the command: those of frames, and whether it shows the mesh instead."""
 
-    options: Options = Options()
+    options: ViewOptions = ViewOptions()
     mesh: Annotated[
         bool, typer.Option("--mesh", help="Show the mesh of the rails, without a run.")
     ] = False
@@ -34,7 +34,7 @@ class Asked:
         """Raise SceneError for options of frames, which a mesh has none of."""
         from tipoff.faults import Fault, SceneError
 
-        if self.options != Options():
+        if self.options != ViewOptions():
             given = str(self.options.condition or self.options.frames)
             expected = "no --condition and no --frames with --mesh"
             raise SceneError([Fault("--mesh", "option", given, expected)])

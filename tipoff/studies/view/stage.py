@@ -20,7 +20,7 @@ import numpy as np
 
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.names import NOMINAL
-from tipoff.studies.view.options import Options
+from tipoff.studies.view.options import ViewOptions
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run
 from tipoff.workspace.stage import Made, Stage
@@ -80,7 +80,7 @@ class View:
     without_pictures: str
 
 
-def run(study: Study, options: Options = Options()) -> Made[View]:
+def run(study: Study, options: ViewOptions = ViewOptions()) -> Made[View]:
     """Files of stress and motion. Raises SceneError for an unknown condition or fewer than two frames,
     StudyError where the run fails."""
     name = options.condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
@@ -106,10 +106,10 @@ def run(study: Study, options: Options = Options()) -> Made[View]:
 def stage_of(condition: str) -> Stage:
     """The stage of a condition."""
 
-    def inputs(study: Study, _: Options) -> list:
+    def inputs(study: Study, _: ViewOptions) -> list:
         return [study.highfi(condition).key, pyvista_version()]
 
-    return Stage(f"view/{condition}", __name__, options=Options, inputs=inputs, result=View)
+    return Stage(f"view/{condition}", __name__, options=ViewOptions, inputs=inputs, result=View)
 
 
 def stored(study: Study) -> list[View]:
