@@ -71,7 +71,7 @@ CASES = [
 
 def test_there_are_options_with_rules():
     """Control: the next test is not empty."""
-    assert len(COMMANDS) >= 11 and len(CASES) >= 18  # one for each option with a rule
+    assert len(COMMANDS) >= 10 and len(CASES) >= 18  # one for each option with a rule
 
 
 @pytest.mark.parametrize("command, path, flag, value, words", CASES)

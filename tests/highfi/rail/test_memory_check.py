@@ -156,16 +156,18 @@ def test_a_solid_is_not_filled_where_its_elements_do_not_fit(
 
 
 @pytest.mark.parametrize(
-    "command, options", [(run, ["--all", "--model", "finite-elements"]), (bench, [])]
+    "command, options",
+    [
+        (run, ["--all", "--model", "finite-elements", "--set", "studies.element_size=1 mm"]),
+        (bench, ["--element-size", "1"]),
+    ],
 )
 def test_commands_report_it_without_a_traceback(tmp_path, monkeypatch, command, options):
     monkeypatch.setattr(memory_estimate, "available", lambda: 100_000_000)
     simulation.MESHES.clear()
     app = typer.Typer()
     app.command()(command)
-    result = CliRunner().invoke(
-        app, [*options, "--set", "studies.element_size=1 mm", "--out", str(tmp_path / "out")]
-    )
+    result = CliRunner().invoke(app, [*options, "--out", str(tmp_path / "out")])
     assert result.exit_code == 2
     assert (
         "GB of memory" in result.stderr

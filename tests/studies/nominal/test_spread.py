@@ -11,6 +11,7 @@ from tipoff.scenes import SceneError, load
 from tipoff.studies.ensemble import stage as ensemble
 from tipoff.studies.nominal import page, spread
 from tipoff.studies.populations import answers
+from tipoff.studies.render.document import terminal
 from tipoff.workspace.settings import Settings, defaults
 from tipoff.workspace.study import Study
 
@@ -56,7 +57,7 @@ def test_the_range_of_a_launch_whose_distribution_is_known(tilted, tmp_path):
 def test_a_scene_without_errors_has_no_range_and_the_page_says_how_to_state_them(tmp_path):
     scene = free_flight.scene().replace({"studies": None})
     assert spread.of_scene(study(scene, tmp_path), scene) is None
-    (said,) = page.ranges(None)
+    said = terminal(page.ranges(None))
     assert "no range is known" in said and 'errors = "paper"' in said
 
 
@@ -103,12 +104,12 @@ def test_cases_that_did_not_settle_are_said(tilted, tmp_path, monkeypatch):
     normal = drawn(lambda random, n: random.normal(size=n), settled=0.9)
     monkeypatch.setattr("tipoff.studies.populations.population.run", normal)
     found = spread.of_scene(study(tilted, tmp_path), tilted)
-    said = " ".join(page.ranges(found))
+    said = terminal(page.ranges(found))
     assert f"{found.cases - found.settled:,} of them" in said and "did not leave and settle" in said
     few = drawn(lambda random, n: random.normal(size=n), settled=0.01)
     monkeypatch.setattr("tipoff.studies.populations.population.run", few)
     found = spread.of_scene(study(tilted, tmp_path), tilted)
-    assert found.ranges is None and "No range" in " ".join(page.ranges(found))
+    assert found.ranges is None and "No range" in terminal(page.ranges(found))
 
 
 def test_bounds_of_the_ends_hold_the_true_quantiles():

@@ -75,7 +75,7 @@ def test_the_range_that_run_prints_is_that_of_the_closed_form(study, capsys):
     single.run(study, NOMINAL)
     found = single.ranged(study, NOMINAL)
     said = capsys.readouterr().out
-    line = next(line for line in said.splitlines() if "95 % range  rate about Z" in line)
+    line = next(line for line in said.splitlines() if "95 % range, rate about Z" in line)
     exact = (-0.975 * LARGEST, -0.025 * LARGEST)
     assert numbers(line) == pytest.approx(exact, abs=0.02 * LARGEST)
     ends = found["spread"]["ranges"]["rate_z_deg_s"]
@@ -124,7 +124,7 @@ def test_answer_and_range_of_a_small_launcher_are_those_of_its_runs(tmp_path):
     quantiles = np.quantile(total_rates(same), [0.025, 0.975])
     # With the tolerance of steps that populations have, rates are within 0.2 % of these.
     assert (ends["low"], ends["high"]) == pytest.approx(tuple(quantiles), rel=2e-3)
-    line = next(line for line in said.stdout.splitlines() if "95 % range  total rate" in line)
+    line = next(line for line in said.stdout.splitlines() if "95 % range, total rate" in line)
     assert numbers(line) == pytest.approx(tuple(quantiles), abs=0.02 * np.ptp(quantiles))
 
     def apart(other) -> float:

@@ -193,7 +193,9 @@ def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):
     monkeypatch.setattr(population, "run", spoilt(np.arange(0, 320, 7)))
     with pytest.raises(StudyError, match="too few"):
         study = Study(load("tiny"), tmp_path / "again", defaults("tiny"))
-        sensitivity.run(study, sensitivity.SensitivityOptions(str(tmp_path / "mine.toml"), 64))
+        sensitivity.run(
+            study, sensitivity.SensitivityOptions(str(tmp_path / "mine.toml"), points=64)
+        )
 
 
 def test_bad_input_is_listed_whole_and_nothing_written(tiny, tmp_path):

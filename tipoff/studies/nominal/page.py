@@ -1,4 +1,4 @@
-"""The answer of the scene itself: the first figures of the page, and the first lines of the terminal."""
+"""The answer of the scene itself: the first figures of the page and of the terminal."""
 
 import math
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ from tipoff.results.model_error import Range as NeighbourRange
 from tipoff.scenes import halving
 from tipoff.studies.nominal.spread import QUANTITIES, SPEED, Range, Spread
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
-from tipoff.studies.render.document import Caption, KeyFigures, Part
+from tipoff.studies.render.document import Bullets, KeyFigures, Part
 from tipoff.uncertain import LEAST, SHARE, STEPS, number, range_of, rounded
 from tipoff.workspace.words import counted
 
@@ -32,7 +32,7 @@ _NO_ERRORS = (
 
 def draw(found: "Nominal") -> list[Part]:
     """The values with their ranges in large type, and their explanation."""
-    return [KeyFigures(figures(found)), Caption(" ".join(f"{line}." for line in notes(found)))]
+    return [KeyFigures(figures(found)), Bullets(notes(found))]
 
 
 def figures(found: "Nominal") -> list[tuple[str, str]]:
@@ -157,23 +157,11 @@ def _of_spread(spread: Spread | None) -> list[str]:
     return said
 
 
-def lines(found: "Nominal") -> list[str]:
-    """The values with their ranges for the terminal, one line for each quantity."""
-    if _values(found) is None:
-        return notes(found)
+def ranges(spread: Spread | None) -> list[Part]:
+    """The 95 % range of each quantity alone, and its explanation."""
     own = [
-        f"  {_meaning(item):<22}{_shown(item, found)} {item.unit}{_under(found.spread, item)}"
-        for item in QUANTITIES
-    ]
-    at = f", {instant.where(found.at)}, {found.at_why}" if found.at == instant.EXIT else ""
-    return [f"The scene itself{at}:", *own, *_of_spread(found.spread)]
-
-
-def ranges(spread: Spread | None) -> list[str]:
-    """The 95 % range of each quantity, with its meaning."""
-    own = [
-        f"95 % range  {_meaning(item):<22}{_text(ends)} {item.unit}"
+        (f"{_text(ends)} {item.unit}", f"95 % range, {_meaning(item)}")
         for item in QUANTITIES
         if (ends := _ends(spread, item)) is not None
     ]
-    return [*own, *_of_spread(spread)]
+    return [KeyFigures(own), Bullets(_of_spread(spread))]

@@ -249,7 +249,8 @@ def _text(part: Part) -> str:
         case str():
             return part
         case KeyFigures():
-            return "\n".join(f"{value} {meaning}" for value, meaning in part.items)
+            width = max(len(value) for value, _ in part.items)
+            return "\n".join(f"  {value:<{width}}  {meaning}" for value, meaning in part.items)
         case Heading() | Caption() | Notice() | Missing():
             return part.text
         case _:

@@ -140,8 +140,9 @@ def _answer(nominal: "Made[Nominal] | None") -> list[str]:
     if not nominal:
         return []
     from tipoff.studies.nominal import page
+    from tipoff.studies.render import document
 
-    return page.lines(nominal.result)
+    return document.terminal(page.draw(nominal.result)).splitlines()
 
 
 def _verdict(agreement: Made[compare.Agreement] | None) -> str:

@@ -177,10 +177,11 @@ def ranged(study: Study, condition: str, detail: Detail = Detail.ANSWER) -> dict
     """``spread``: the ranges of a condition under the random errors of the scene (``nominal.spread``);
     prints them unless the ``detail`` is nothing."""
     from tipoff.studies.nominal import page, spread
+    from tipoff.studies.render import document
 
     found = spread.of_scene(study, study.condition(condition))
     if detail:
-        print("\n".join(f"  {line}" for line in page.ranges(found)))
+        print(document.terminal(page.ranges(found)))
     return {"spread": found and asdict(found)}
 
 
