@@ -5,15 +5,18 @@ It is the least one, from the second on, whose next degree changes no settled ra
 """
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tipoff.lowfi.modes import THRESHOLD
-from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE
 
+if TYPE_CHECKING:
+    from tipoff.lowfi.single_run import SingleRun
 
-def choose(run: Callable[[int], SingleRun], most: int) -> tuple[int, str]:
+
+def choose(run: "Callable[[int], SingleRun]", most: int) -> tuple[int, str]:
     """The degree, up to ``most``, and the reason in one line of text; ``run`` makes a run with
     patterns of a degree."""
     degree, change = min(LOW_DEGREE, most), 0.0
@@ -34,7 +37,7 @@ def choose(run: Callable[[int], SingleRun], most: int) -> tuple[int, str]:
     return most, f"{most}: {moved}, and there is no higher one"
 
 
-def _settled(run: SingleRun) -> np.ndarray | None:
+def _settled(run: "SingleRun") -> np.ndarray | None:
     """Settled rates (3,) rad/s, None without."""
     rate = None if run.message else run.judged()[1].rate
     return None if rate is None else np.array(rate)

@@ -19,10 +19,12 @@ run is the result.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tipoff.lowfi.single_run import SingleRun
+if TYPE_CHECKING:
+    from tipoff.lowfi.single_run import SingleRun
 
 THRESHOLD = math.radians(0.02)  # rad/s, of the settled rates
 FEWEST = 4  # if any are needed; the lowest modes of a rail come in pairs of like frequency
@@ -34,7 +36,7 @@ class Choice:
 
     modes: int  # vibrating modes of each rail
     why: str  # one line of text
-    runs: tuple[SingleRun, ...] = ()  # made for the choice, without the result
+    runs: "tuple[SingleRun, ...]" = ()  # made for the choice, without the result
 
     def cost(self) -> dict[str, int]:
         """``modes``, the number of runs without the result, and their steps."""
@@ -44,8 +46,8 @@ class Choice:
 
 
 def choose(
-    run: Callable[[int], SingleRun], accurate: Callable[[], SingleRun] | None = None
-) -> tuple[SingleRun, Choice]:
+    run: "Callable[[int], SingleRun]", accurate: "Callable[[], SingleRun] | None" = None
+) -> "tuple[SingleRun, Choice]":
     """The run with the necessary modes, and the choice. ``run`` makes a run with so many modes; one
     without modes watches all. ``accurate``, for a tolerance above the default, makes the run
     without modes at the default."""
@@ -77,7 +79,7 @@ def needed(effect: np.ndarray, threshold: float = THRESHOLD) -> int:
     return int(np.argmax(rest <= threshold))
 
 
-def _enlarged(last: list[SingleRun], effect: np.ndarray) -> float:
+def _enlarged(last: "list[SingleRun]", effect: np.ndarray) -> float:
     """Change of the settled rates from one run to the next, over the sum that predicted it."""
     before, after = (found.judged()[1].rate for found in last)
     if before is None or after is None:
@@ -87,7 +89,7 @@ def _enlarged(last: list[SingleRun], effect: np.ndarray) -> float:
     return change / stood if change > THRESHOLD else 1.0
 
 
-def _why(made: list[SingleRun], effect: np.ndarray, enlarged: float) -> str:
+def _why(made: "list[SingleRun]", effect: np.ndarray, enlarged: float) -> str:
     held = effect.size
     if held == 0:
         return "none: this rail compliance holds no modes"

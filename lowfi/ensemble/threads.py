@@ -6,17 +6,18 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import chain
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from tipoff.lowfi.ensemble.batch import Case, Family
+if TYPE_CHECKING:
+    from tipoff.lowfi.ensemble.batch import Case, Family
 
 # cases set up together: large against the cost of a call, small against memory
 PIECE = 256
 
 
 def completed(
-    family: Family, pieces: Iterable[Sequence[Mapping[str, Any]]], workers: int | None = None
-) -> Iterator[list[Case]]:
+    family: "Family", pieces: Iterable[Sequence[Mapping[str, Any]]], workers: int | None = None
+) -> "Iterator[list[Case]]":
     """Cases of each of ``pieces`` of rows, in their order; free threads take the next piece."""
     count = workers or os.cpu_count() or 1
     waiting: deque[list[Future[list[tuple[int, Case]]]]] = deque()
@@ -31,6 +32,6 @@ def completed(
             yield in_order(future.result() for future in waiting.popleft())
 
 
-def in_order(found: Iterable[list[tuple[int, Case]]]) -> list[Case]:
+def in_order(found: "Iterable[list[tuple[int, Case]]]") -> "list[Case]":
     """Cases of a piece, from pairs of a row's number and its case."""
     return [case for _, case in sorted(chain.from_iterable(found), key=lambda pair: pair[0])]

@@ -14,18 +14,21 @@ too.
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.store import Store
 from tipoff.lowfi.numerics import Numerics
+
+if TYPE_CHECKING:
+    from tipoff.lowfi.ensemble.request import Ensemble
 
 CLEARANCE_CHANGE = 1e-6  # m
 TOLERANCE = 1e-10  # relative, of a step
 
 
-def of_ensemble(ensemble: Ensemble) -> dict[str, Ensemble]:
+def of_ensemble(ensemble: "Ensemble") -> "dict[str, Ensemble]":
     """The twins of ``ensemble`` by the cause of the difference."""
     return {
         "clearance": ensemble._replace(widening=CLEARANCE_CHANGE),
@@ -50,7 +53,7 @@ def column(cause: str) -> str:
     return f"rate_change_by_{cause}"
 
 
-def attributes(cause: str, twin: Ensemble) -> dict[str, str]:
+def attributes(cause: str, twin: "Ensemble") -> dict[str, str]:
     """Unit and meaning of the column of changes."""
     causes = {
         "clearance": f"{twin.widening:g} m more of every clearance",
@@ -59,12 +62,12 @@ def attributes(cause: str, twin: Ensemble) -> dict[str, str]:
     return {"units": "rad/s", "long_name": f"largest change of a settled rate by {causes[cause]}"}
 
 
-def opened(twin: Ensemble, cause: str, store: Store) -> Store:
+def opened(twin: "Ensemble", cause: str, store: Store) -> Store:
     """The store of a twin of ``store``, created if it does not exist. Raises StoreError."""
     return twin.store(store.path / "twins" / cause)
 
 
-def add(store: Store, cause: str, twin: Ensemble, disturbed: Store) -> None:
+def add(store: Store, cause: str, twin: "Ensemble", disturbed: Store) -> None:
     """Add the column of changes to a complete ``store``; ``disturbed`` is the store of its
     ``twin``. Raises StoreError."""
     store.add(column(cause), attributes(cause, twin), changes(store, disturbed))

@@ -92,7 +92,7 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, figures
     # nothing changed
     assert call(*asked).exit_code == 0 and (folder / "flight.json").stat().st_mtime_ns == stamp
     undrawn(monkeypatch)  # laid out once is enough
-    further = json.loads(call(*asked, "--range", "1 km", "--json").stdout)
+    further = json.loads(call(*asked, "--set", "flight.range=1 km", "--json").stdout)
     assert (
         further["flight"]["range_m"] == 1000.0
         and further["conditions"][0]["flown"]["miss_m"] > 50.0 * row["miss_m"]

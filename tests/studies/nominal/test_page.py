@@ -109,7 +109,7 @@ def test_rates_of_a_motor_that_burns_on_are_those_at_the_exit(found):
     shown = replace(found, answer=answers, spread=spread_, at="exit", at_why="because it burns on")
     said = html(page.draw(shown))
     assert "after the exit, because it burns on, rates inertial" in said and "burnout" not in said
-    assert ", at the exit. The ends of" in said
+    assert ", at the exit.</li><li>The ends of" in said
 
 
 def test_without_errors_no_range_is_claimed(found):

@@ -98,12 +98,13 @@ def test_answer_and_range_of_a_small_launcher_are_those_of_its_runs(tmp_path):
     """``tipoff run --range`` and the stage, against runs and ensembles of the Python interface: the same
     launches have the same range, others with another seed have it within the bounds of its ends.
     Control: with twice the clearance it is outside them."""
-    size, out = "studies.element_size=16 mm", tmp_path / "out"
+    size, out = "16 mm", tmp_path / "out"
+    elements = f"studies.element_size={size}"
     said = CliRunner().invoke(
-        app, ["run", "--scene", "tiny", "--range", "--set", size, "--out", str(out)]
+        app, ["run", "--scene", "tiny", "--range", "--set", elements, "--out", str(out)]
     )
     assert said.exit_code == 0, said.stderr
-    asked = [*("run", "--scene", "tiny", "--range", "--json"), "--set", size]
+    asked = [*("run", "--scene", "tiny", "--range", "--json"), "--set", elements]
     shown = json.loads(CliRunner().invoke(app, [*asked, "--out", str(out)]).stdout)
     scene = tipoff.load("tiny")
     study = Study(scene, out / "tiny", Settings(element_size=0.016, workers=1))

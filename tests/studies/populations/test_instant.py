@@ -92,7 +92,8 @@ def test_a_single_run_answers_with_its_instant(tmp_path, capsys, lasts, at):
         assert "by hand" not in printed and f"{TURNING * lasts:.3f}" in printed["burnt"]
         assert "in a vacuum" in printed["burnt"]
     (row,) = TypeAdapter(tuple[ConditionRun, ...]).validate_python([made])
-    shown = dict(zip(page.settled([row]).heads, page.settled([row]).rows[0]))
+    (table,) = page.draw([row])
+    shown = dict(zip(table.heads, table.rows[0]))
     assert shown["values"] == instant.where(at)
     assert shown["v_x (m/s)"] == pytest.approx(speed, rel=1e-5)
     run = tipoff.run(scene, sensitivity=False)
@@ -108,7 +109,7 @@ def test_no_number_is_minus_zero():
     found = Outcome(1e-2, 1e-2, tiny, tiny, 0.0, 0.0, tiny, exit_velocity=tiny, exit_rate=tiny)
     for outcome in (found, found._replace(impulse_after_exit=1.0)):
         run = flight(model="compliant", outcome=outcome)
-        table = page.settled([runs.row("one", run, "")])
+        (table,) = page.draw([runs.row("one", run, "")])
         text = f"{run.summary()} {run!r} {document.terminal([table])} {document.markdown([table])}"
         assert "0.000" in text and "-0.0" not in text and "+0.0" not in text
 

@@ -160,7 +160,7 @@ def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path
     page = render(made)
     assert 'id="rails"' in page and "0 of 0" in page
     line = re.search(r"Not made: ([^.]*)\. <code>([^<]*)</code>", page)
-    assert {"mesh", "compare", "cost", "ablation"} <= set(line[1].split(", "))
+    assert {"view --mesh", "compare", "cost", "ablation"} <= set(line[1].split(", "))
     assert line[2] == f"tipoff NAME --scene tiny --out {tmp_path.parent}"
     assert "phi15 diverged" in page
     assert "docs/verification_and_validation.md" in page

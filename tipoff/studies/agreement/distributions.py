@@ -8,6 +8,7 @@ difference. ``agreement.neighbours`` draws, ``agreement.equivalence`` judges.
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,13 +16,15 @@ from tipoff import lowfi
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.results.trajectory import Trajectory
 from tipoff.studies.agreement import equivalence, neighbours, verdicts
-from tipoff.studies.agreement.candidates import Candidate
 from tipoff.studies.agreement.equivalence import Comparison
 from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.agreement.verdicts import JudgedCondition
 from tipoff.workspace.announcing import announce
 from tipoff.workspace.progress import Board
 from tipoff.workspace.study import Study
+
+if TYPE_CHECKING:
+    from tipoff.studies.agreement.candidates import Candidate
 
 FURTHER = 8  # further draws of a surrogate for each draw of the reference; more would add little
 _CURVE = tuple(round(0.01 * share, 2) for share in range(1, 100))  # of distributions that are drawn
@@ -98,7 +101,7 @@ def counts(
 
 
 def judge(
-    study: Study, wanted: Mapping[str, int], surrogates: Sequence[Candidate], limit: float
+    study: Study, wanted: Mapping[str, int], surrogates: "Sequence[Candidate]", limit: float
 ) -> list[Distribution]:
     """The distributions of each condition with its verdicts; ``limit`` (deg/s) of the settled
     rates. The surrogates have the rail compliance of the coarse mesh."""
@@ -164,7 +167,7 @@ def _rates(run: Trajectory) -> list[float]:
 
 
 def _settled(
-    study: Study, surrogate: Candidate, condition: str, drawn: list[dict], board: Board
+    study: Study, surrogate: "Candidate", condition: str, drawn: list[dict], board: Board
 ) -> np.ndarray:
     """Settled rates (n,3) deg/s of a surrogate on every draw; NaN where a case did not settle."""
     run = surrogate.request(study, condition)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from tipoff.mechanics import instant
 from tipoff.results.model_error import Range
-from tipoff.studies.render.document import Figure, Part
+from tipoff.studies.render.document import Figure, Fold, Part
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.runs import figures
 from tipoff.studies.runs.results import AtExit, ConditionRun, Settled
@@ -27,13 +27,13 @@ _Cells = tuple[Column | str, Callable[[Any], Any]]
 RANGES = "A range in place of a value: the run is sensitive, and the range is that of runs within 1 µm of clearance."
 
 
-def settled(rows: Sequence[ConditionRun]) -> Table:
-    """Velocity and rates of each condition for the terminal, at the instant that counts."""
+def draw(rows: Sequence[ConditionRun]) -> list[Part]:
+    """Velocity and rates of each condition, at the instant that counts."""
     under = [row.rail_compliance["words"] for row in rows if row.rail_compliance]
     notes = tuple(dict.fromkeys(under))
     if any(row.range for row in rows):
         notes += (RANGES,)
-    return Table.of_records(rows, *_SETTLED, notes=notes, kind=ConditionRun)
+    return [Table.of_records(rows, *_SETTLED, notes=notes, kind=ConditionRun)]
 
 
 def _of_taken(
@@ -91,13 +91,15 @@ def thrust(page: "Page") -> list[Part]:
 
 
 def curves(page: "Page") -> list[Part]:
-    """Velocity and rates of all models."""
+    """Velocity and rates of all models over time, and their values."""
+    tables = [part for rows in page.rows().values() if rows for part in draw(rows)]
+    values: list[Part] = [Fold("Values of each condition", tables)] if tables else []
     fitted = [name for name in page.scene.agreement.fitted if name in page.runs.highfi]
     names = fitted or list(page.runs.highfi)[:5]
     if not names:
-        return [page.missing("highfi", "highfi")]
+        return [page.missing("highfi", "highfi"), *values]
     caption = _CURVES if page.runs.calibrated else f"{_CURVES} There are no runs with springs."
-    return [Figure(lambda: figures.figure6(page.runs, names), caption)]
+    return [Figure(lambda: figures.figure6(page.runs, names), caption), *values]
 
 
 def contact(page: "Page") -> list[Part]:

@@ -115,7 +115,7 @@ def run(
     from tipoff.workspace import models
 
     def shown(found: dict) -> "list[Part]":
-        return [page.settled(single.rows(found))] if "conditions" in found else []
+        return page.draw(single.rows(found)) if "conditions" in found else []
 
     def without(options: dict, expected: str) -> None:
         wrong = {name: str(value) for name, value in options.items() if value is not None}
@@ -142,7 +142,7 @@ def run(
         fidelity = "highfi" if model == FINITE_ELEMENTS else "lowfi"
         every = request.study(checkpoint_every=checkpoint_every, strict=strict)
         made = stage.run(every, fidelity)
-        return Output.of(made, lambda runs: [page.settled(runs.conditions)], request.out)
+        return Output.of(made, lambda runs: page.draw(runs.conditions), request.out)
     if range_:
         usual = {"--model": None} if model == COMPLIANT else {}
         chosen = {"--accuracy": accuracy, "--budget": budget}
