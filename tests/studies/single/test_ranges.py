@@ -20,7 +20,7 @@ def test_every_table_of_runs_has_the_range_of_a_sensitive_one(tmp_path):
     some = single.rows(single.several(["h7", "phi15"], lambda name: single.run(study, name)))
     assert [row.range for row in some] == [found, None]
     for rows in (some, tuple(every.values())):
-        table = page.settled(rows)
+        (table,) = page.draw(rows)
         cells = {row[0]: dict(zip(table.heads, row)) for row in table.rows}
         spans = (*zip(found.low_deg_s, found.high_deg_s), (found.low_m_s[0], found.high_m_s[0]))
         names = (*(f"rate {axis} (deg/s)" for axis in "xyz"), "v_x (m/s)")

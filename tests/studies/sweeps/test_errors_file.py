@@ -92,7 +92,7 @@ def test_rates_of_a_free_payload_over_the_sizes_of_the_file(tmp_path, monkeypatc
     # what is not swept, with its size, and how far the swept one goes
     assert found.held == {"payload.mass": "0.905 to 1.1 times"}
     assert "payload.mass 0.905 to 1.1 times" in shown and "thrust eccentricity 0.74 mm" in shown
-    other = sweeps.run(study, Options(angles=8)).result
+    other = sweeps.run(study, SensitivityOptions(sweep=8)).result
     assert not other.held and "not swept" not in terminal(page.draw(other))
     written(tmp_path, POLAR.replace("0.2 mm", "0.4 mm"))
     again = sweeps.run(study, SensitivityOptions(vary=vary, sweep=8)).result
