@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from tests.scenes import test_lugs
 from tests.studies.synthetic import flight
 from tipoff import lowfi
 from tipoff.results import hand_calculation
-from tipoff.scenes import load
+from tipoff.scenes import load, parse
 
 FREE = {"contact": None, "friction": None}
 
@@ -106,6 +107,25 @@ def test_a_rocket_turns_about_its_rear_button(clock):
     assert abs(falling / run.outcome.exit_rate[1] - 1.0) > 0.2
 
 
+@pytest.mark.parametrize("inner, valid", [("6.9 mm", True), ("6.36 mm", False)])
+def test_a_lug_is_a_pin_while_it_has_play(inner, valid):
+    """Two ends, 30 mm apart, that turn by 3e-3 rad; it bounces within its play. Control: with 5 um of play they
+    hold the rocket, whose rate is a tenth of that of the pin."""
+    rear, front = test_lugs.TABLES["lugs"]
+    tables = test_lugs.TABLES | {"lugs": [rear | {"inner_diameter": inner}, front]}
+    tilted = {"thrust_offset.misalignment": {"axial": "1 deg", "radial": "270 deg"}}
+    start = {} if not valid else {"initial.position.z": "-0.275 mm"}  # on the rod, as it lies
+    one = parse(tables).replace(test_lugs.STIFF | tilted | start)
+    run = lowfi.run(one, "springs")
+    found = hand_calculation.pinned(one, run)
+    assert isinstance(found, str) is not valid
+    if valid:
+        assert "its rear lug" in found.words
+        assert found.rate_rad_s[1] == pytest.approx(run.outcome.exit_rate[1], rel=0.15)
+    else:
+        assert "both its ends" in found and abs(np.degrees(run.outcome.exit_rate[1])) < 0.6
+
+
 def test_what_is_not_valid_has_a_reason():
     rocket, tiny = load("rocket_rail"), load("tiny").condition("phi15")
     run = lowfi.run(tiny, "springs")
@@ -114,5 +134,7 @@ def test_what_is_not_valid_has_a_reason():
     assert hand_calculation.rates(load("tiny"), touched) is None
     assert "8 pads touch" in hand_calculation.why_not(load("tiny"), touched)
     assert hand_calculation.why_not(load("tiny"), flight()) == ""
+    free = rocket.replace({"contact": None, "friction": None})
+    assert "nothing holds" in hand_calculation.pinned(free, lowfi.run(free))
     short = rocket.replace({"duration": "0.1 s"})
     assert "stays on the rail" in hand_calculation.pinned(short, lowfi.run(short, "springs"))

@@ -9,6 +9,8 @@ direction of the platform, so its lever grows while the payload turns: by about 
 distance of the spring, which must be small beside the moment.
 
 A rocket whose front button has left turns about its rear one (``mechanics.estimates.pin``). This is the rate at exit.
+A lug or a shoe has two ends. It is a pin while neither reaches the other wall: half its length times the angle,
+half of w dt, is below the play.
 """
 
 import math
@@ -103,9 +105,11 @@ def _rates(scene: Scene, run: "Trajectory") -> ByHand | str:
 
 def pinned(scene: Scene, run: "Trajectory") -> ByHand | str:
     """Rates at exit of a rocket on two buttons or lugs that turns about the rear one; or why it has none."""
-    parts = [guide for guide in guides.of_run(scene, run) if not guide.name.startswith("pad")]
-    if len(parts) != 2 or scene.platform is not None:
+    parts = guides.of_run(scene, run)
+    if len(parts) != 2 or parts[0].name.startswith("pad") or scene.platform is not None:
         return "the rocket has not two buttons or lugs on fixed rails"
+    if scene.contact is None:
+        return "nothing holds the buttons or lugs"
     rear, front = sorted(parts, key=lambda each: each.place_m[0])
     name = rear.name.split()[0]
     if rear.leaves_s is None or front.leaves_s is None:
@@ -116,7 +120,13 @@ def pinned(scene: Scene, run: "Trajectory") -> ByHand | str:
         return f"the rear {name} is in front of the mass centre"
     impulse = thrust_law.impulse(model.thrust, rear.leaves_s)
     impulse -= thrust_law.impulse(model.thrust, front.leaves_s)
-    found = pin.rates(model, behind, impulse, rear.leaves_s - front.leaves_s)
+    time = rear.leaves_s - front.leaves_s
+    found = pin.rates(model, behind, impulse, time)
+    places = model.faces.centre[model.faces.guide == parts.index(rear), 0]
+    _, y, z = scene.contact.gaps()
+    across = 0.25 * np.ptp(places) * time * np.abs(found)
+    if across[1] > z or across[2] > y:
+        return f"the rear {name} is so long that both its ends hold the rocket"
     words = f"a rigid rocket turns about its rear {name} after the front one left, without play and roll"
     return ByHand(_vector(found), EXIT, words)
 
