@@ -6,9 +6,10 @@ the same compliance, and a surrogate is judged with the compliance of its result
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -29,6 +30,8 @@ _DECIDES = {"rail", "pads", "contact", "platform"}  # tables that determine ``ma
 _PLACES = 4  # stations along the rail at which meshes are compared
 # A loop over scenes with one rail reads it once.
 KEPT: cache.Cache[RailCompliance] = cache.binary(content, RailCompliance.load, cache.Held)
+# of long rails; that of others is in the file of their compliance
+KEPT_UNCERTAINTY = cache.documents(stored.plain_uncertainty, stored.uncertainty)
 KEPT_JOINTS = cache.binary(stored.content_of_joints, stored.read_joints)
 
 
@@ -41,14 +44,21 @@ def compliance(
 
     Takes seconds to minutes, once for a rail and its pads. Raises SceneError or MeshError.
     """
+    size = element_size or own_size(scene.studies, scene.rail.length)
+    found = _computed(scene, size, degree, waits=True)
+    return found.finding(partial(_joints, scene, size, degree))
+
+
+def _computed(scene: Scene, size: float, degree: int, waits: bool) -> RailCompliance:
+    """As ``compliance``; a long rail has its uncertainty only if the caller ``waits`` for it."""
     from tipoff.highfi import compliance as statics  # slow to load
     from tipoff.highfi import discretisation
 
-    size = element_size or own_size(scene.studies, scene.rail.length)
     rails = statics.rails(scene, size)
     found = statics.condense(scene, size, held=rails, degree=degree)
-    found = discretisation.stated(scene, size, found, rails)
-    return found.finding(partial(_joints, scene, size, degree))
+    if found.nodes is not None and not waits:
+        return replace(found, element_size=discretisation.size_of(scene, size))
+    return discretisation.stated(scene, size, found, rails)
 
 
 def _joints(scene: Scene, element_size: float, degree: int) -> JointTerms | None:
@@ -82,7 +92,8 @@ def kept(
 ) -> RailCompliance:
     """As ``compliance``, in elements of ``element_size`` (m), read from ``folder`` if it is stored
     there for this rail, these pads and this code, else computed and stored. ``say`` gets messages
-    on long computations and, once per process and file, the uncertainty by the elements."""
+    on long computations and, once per process and file, the uncertainty by the elements. That of a long
+    rail is computed when it is first used, because it takes longer than the first runs."""
     key = _key(scene, element_size, degree)
     path = cache.file(folder, "compliance", key, ".npz")
     say = say or (lambda _: None)
@@ -90,10 +101,31 @@ def kept(
         path, key, "it is computed again", lambda: _made(scene, element_size, degree, path, say)
     )
     found.finding(partial(_kept_joints, scene, folder, element_size, degree))
-    if path not in _SAID:
+    if found.nodes is not None:  # a long rail
+        found.finding_uncertainty(partial(_kept_uncertainty, scene, folder, element_size, degree))
+    elif path not in _SAID:
         _SAID.add(path)
         say(f"  {found.accuracy()}")
     return found
+
+
+def _kept_uncertainty(scene: Scene, folder: Path, size: float, degree: int) -> dict[str, Any]:
+    """As ``discretisation.Uncertainty.stated``, from a file beside that of the compliance."""
+
+    def made() -> dict[str, Any]:
+        from tipoff.highfi import discretisation  # slow to load
+        from tipoff.highfi.rail import places
+
+        tell(
+            f"uncertainty of the rail compliance by {500.0 * size:g} mm elements, once; takes up to "
+            "minutes"
+        )
+        with places.progress_to(_Waiting(tell, time.perf_counter)):
+            return discretisation.of_scene(scene, size).stated()
+
+    key = _key(scene, size, degree)
+    path = cache.file(folder, "uncertainty", key, ".json")
+    return KEPT_UNCERTAINTY.get_or_make(path, key, "it is computed again", made)
 
 
 def _kept_joints(scene: Scene, folder: Path, element_size: float, degree: int) -> JointTerms | None:
@@ -121,12 +153,11 @@ def _made(
 
     say(
         f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements"
-        f"{_why(scene, element_size)}, then {500 * element_size:g} mm for its uncertainty; takes "
-        f"seconds to minutes"
+        f"{_why(scene, element_size)}; takes seconds to minutes"
     )
     began = time.perf_counter()
     with places.progress_to(_Waiting(say, time.perf_counter)):
-        found = compliance(scene, element_size, degree)
+        found = _computed(scene, element_size, degree, waits=False)
     say(f"  computed in {time.perf_counter() - began:.3g} s, stored in {path}")
     return found
 

@@ -26,7 +26,7 @@ Methods for Sparse Linear Systems, 2003, chapter 9.
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import eigh
@@ -74,6 +74,14 @@ class Uncertainty(NamedTuple):
     frequency: float | None  # lowest of all rails
     why: str = ""
 
+    def stated(self) -> dict[str, Any]:
+        """Fields of a ``RailCompliance``."""
+        return {
+            "uncertainty": self.compliance,
+            "frequency_uncertainty": self.frequency,
+            "not_known": self.why,
+        }
+
 
 def stated(
     scene: Scene,
@@ -84,16 +92,16 @@ def stated(
     """``found`` with the size (m) of its elements and their uncertainty. ``compliance.condense``
     made it for ``scene`` and ``element_size`` (m); ``rails`` are those that it used. Raises
     SceneError or MeshError."""
-    mesh = prepare(inputs.nominal(scene), Numerics(element_size=element_size))
-    size = split.shortest(mesh) if isinstance(scene.rail, MeshTable) else element_size
     known = of_scene(scene, element_size, rails)
-    return replace(
-        found,
-        element_size=size,
-        uncertainty=known.compliance,
-        frequency_uncertainty=known.frequency,
-        not_known=known.why,
-    )
+    return replace(found, element_size=size_of(scene, element_size), **known.stated())
+
+
+def size_of(scene: Scene, element_size: float) -> float:
+    """Size (m) of the elements, those of a file if the rail is from one. Raises SceneError or MeshError."""
+    if not isinstance(scene.rail, MeshTable):
+        return element_size
+    mesh = prepare(inputs.nominal(scene), Numerics(element_size=element_size))
+    return split.shortest(mesh)
 
 
 def of_scene(

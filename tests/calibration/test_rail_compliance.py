@@ -6,13 +6,15 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
+
 from tests.highfi.rail.test_own_rail import channels
 from tests.in_memory import memory
 from tipoff import calibration
 from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance as statics
 from tipoff.highfi import discretisation
-from tipoff.highfi.rail import places
+from tipoff.highfi.rail import nodal, places
 from tipoff.scenes import SceneError, load
 from tipoff.scenes.rail_compliance import digest
 from tipoff.scenes.scene import Scene
@@ -137,7 +139,7 @@ def test_the_faces_of_a_rail_from_a_file_are_part_of_it():
 
 def test_the_elements_are_those_that_are_asked_for_or_of_the_scene(monkeypatch):
     def condense(scene, size, held, degree):
-        return SimpleNamespace(finding=lambda joints: size)
+        return SimpleNamespace(finding=lambda joints: size, nodes=None)
 
     monkeypatch.setattr(statics, "condense", condense)
     monkeypatch.setattr(discretisation, "stated", lambda scene, size, found, rails: found)
@@ -156,7 +158,7 @@ def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
         for part in range(4):
             now += seconds
             report(0.25 * (part + 1))
-        found = SimpleNamespace(accuracy=lambda: "")
+        found = SimpleNamespace(accuracy=lambda: "", nodes=None)
         found.finding = lambda joints: found
         return found
 
@@ -215,3 +217,27 @@ def test_threads_do_not_change_a_bit(monkeypatch):
         monkeypatch.setattr(places, "processors", lambda cores=cores: cores)
         found.append(statics.condense(load("tiny"), 16e-3).hash)
     assert found[0] == found[1]
+
+
+def test_a_long_rail_has_its_uncertainty_when_it_is_first_used(monkeypatch, tmp_path):
+    """That of a compliance which waits for it, computed once and read again. A run needs none. Control: that
+    of a short rail is in the file of its compliance."""
+    monkeypatch.setattr(nodal, "LEAST_BYTES", 0.0)
+    mounts = [{"start": start, "end": start + 0.06} for start in (0.06, 0.8)]
+    scene = load("rocket_rail").replace({"rail.end": 0.28, "rail.mounts": mounts})
+    own = tmp_path / "own"
+    made = rail_compliance.kept(scene, own, 20e-3)
+    assert made.nodes is not None and made.uncertainty is None and made.element_size == 20e-3
+    assert not list(own.glob("*.json"))
+    known, expected = made.known(), calibration.compliance(scene, 20e-3)
+    np.testing.assert_array_equal(known.uncertainty, expected.uncertainty)
+    assert made.stated() == expected.stated() and known.hash == made.hash == expected.hash
+    assert made.softer.hash == expected.softer.hash != made.hash
+
+    shutil.copytree(own, tmp_path / "other")
+    monkeypatch.setattr(discretisation, "of_scene", None)
+    found = rail_compliance.kept(scene, tmp_path / "other", 20e-3)
+    assert found is not made and found.stated() == made.stated()
+    monkeypatch.undo()
+    short = rail_compliance.kept(load("tiny"), own, 16e-3)
+    assert short.nodes is None and short.known() is short and short.uncertainty is not None

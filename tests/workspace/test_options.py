@@ -9,6 +9,7 @@ import typer
 from tipoff import scenes
 from tipoff.calibration import rail_compliance
 from tipoff.faults import SceneError
+from tipoff.highfi import compliance as statics
 from tipoff.mechanics.rail_compliance import MODES
 from tipoff.scenes import studies
 from tipoff.workspace import settings
@@ -94,7 +95,7 @@ def test_elements_grow_with_the_rail_unless_the_scene_states_them(tmp_path):
     def said(scene) -> str:
         lines: list[str] = []
         with pytest.MonkeyPatch.context() as patch, pytest.raises(MemoryError):
-            patch.setattr(rail_compliance, "compliance", full)
+            patch.setattr(statics, "rails", full)
             rail_compliance.kept(
                 scene, tmp_path, settings.defaults(scene).element_size, lines.append
             )
@@ -105,8 +106,8 @@ def test_elements_grow_with_the_rail_unless_the_scene_states_them(tmp_path):
 
     stated = scenes.load("rocket_rail").replace({"rail.end": 10.28})
     assert settings.defaults(stated).element_size == 5e-3
-    assert "5 mm elements, then 2.5 mm" in said(stated)
+    assert "5 mm elements; takes" in said(stated)
     for end, size in ((1.37, 2e-3), (3.27, 10e-3), (10.28, 20e-3)):
         scene = stated.replace({"rail.end": end, "studies.element_size": None})
         assert settings.defaults(scene).element_size == size
-    assert "20 mm elements (the default for a rail of 11 m), then 10 mm" in said(scene)
+    assert "20 mm elements (the default for a rail of 11 m); takes" in said(scene)

@@ -85,7 +85,7 @@ def measured(run: Run, nominal: Trajectory, moved: Disturbed) -> ModelError:
     for name, changed in _changed(run):
         if changed is None:
             assert run.compliance is not None
-            why = run.compliance.not_known or "not stated by this rail compliance"
+            why = run.compliance.known().not_known or "not stated by this rail compliance"
             return ModelError(not_known=f"{name}: {why}")
         change = instant.change(nominal.outcome, execute(changed).outcome)
         if change is None:

@@ -2,13 +2,14 @@
 
 import math
 import tomllib
+from dataclasses import replace
 
 import pytest
 from typer.testing import CliRunner
 
 import tipoff
 from tests.lowfi.support import IMMOVABLE, WEIGHTLESS
-from tipoff import lowfi, scenes
+from tipoff import highfi, lowfi, scenes
 from tipoff.results import unfinished
 from tipoff.scenes import SceneError, implausible, launch, provenance, uncertainty
 from tipoff.studies.cli import app
@@ -302,16 +303,14 @@ def test_a_rocket_on_a_rod_has_lugs(tmp_path, monkeypatch):
         assert made.exit_code == 2 and words in made.stderr
 
 
-@pytest.mark.parametrize("mass, rail", [("24 kg", "11 m"), ("35 kg", "3.9 m")])
-def test_a_stranger_has_an_answer_without_editing_pads(mass, rail, tmp_path, monkeypatch):
-    """Buttons, mass centre and angle are lines of the file. The speed is that of the motion along the rail, but for the
-    rise of the thrust in 50 ms."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "motor.csv").write_text("time_s,force_N\n0,0\n0.05,1500\n3,1500\n3.1,0\n")
+def strangers(mass: str, rail: str, folder) -> scenes.Scene:
+    """The scene of a rocket whose buttons, mass centre and angle are edited lines of the file, in the present
+    ``folder``."""
+    (folder / "motor.csv").write_text("time_s,force_N\n0,0\n0.05,1500\n3,1500\n3.1,0\n")
     asked = ("--mass", mass, "--size", "3.7 m, 152 mm", "--rail-length", rail)
     made = call("new", "mine.toml", "--rocket", *asked, "--thrust-curve", "motor.csv")
     assert made.exit_code == 0, made.output
-    text = (tmp_path / "mine.toml").read_text()
+    text = (folder / "mine.toml").read_text()
     for line, own in (
         ('place = "0.23125 m"', 'place = "0.305 m"'),
         ('place = "1.73438 m"', 'place = "1.646 m"'),
@@ -320,8 +319,15 @@ def test_a_stranger_has_an_answer_without_editing_pads(mass, rail, tmp_path, mon
     ):
         assert line in text
         text = text.replace(line, own)
-    (tmp_path / "mine.toml").write_text(text)
-    scene = scenes.load("mine.toml").replace(
+    (folder / "mine.toml").write_text(text)
+    return scenes.load("mine.toml")
+
+
+@pytest.mark.parametrize("mass, rail", [("24 kg", "11 m"), ("35 kg", "3.9 m")])
+def test_a_stranger_has_an_answer_without_editing_pads(mass, rail, tmp_path, monkeypatch):
+    """The speed is that of the motion along the rail, but for the rise of the thrust in 50 ms."""
+    monkeypatch.chdir(tmp_path)
+    scene = strangers(mass, rail, tmp_path).replace(
         {"thrust_offset": None, "friction": None, "initial": None}
     )
     run = lowfi.run(scene, "springs")
@@ -332,6 +338,25 @@ def test_a_stranger_has_an_answer_without_editing_pads(mass, rail, tmp_path, mon
     assert speed == pytest.approx(
         math.sqrt(2.0 * (1500.0 - weight) / scene.payload.mass * way), rel=0.02
     )
+
+
+@pytest.mark.slow
+def test_all_modes_vibrate_on_a_soft_end(tmp_path, monkeypatch):
+    """A rail that is not held over its last 1.1 m, as that of 11 m. Control: where friction drags the walls but not
+    the modes, the run diverges before the exit."""
+    monkeypatch.chdir(tmp_path)
+    scene = strangers("24 kg", "11 m", tmp_path)
+    held = scene.rail.mounts[:3]
+    mounts = [{"start": each.start, "end": each.end} for each in held]
+    scene = scene.replace({"rail.mounts": mounts, "rail.end": held[-1].end + 1.1})
+    walls = highfi.condense(scene, 20e-3)
+    every, control = (
+        lowfi.run(scene, compliance=each, numerics=lowfi.Numerics(modes=20))
+        for each in (walls, replace(walls, dragged_shape=None))
+    )
+    assert every.status == "exited", every.message
+    assert every.outcome.exit_velocity[0] > 15.0
+    assert control.status == "diverged" and control.time[-1] < every.outcome.exit_time
 
 
 @pytest.mark.parametrize("options", [(), ("--rocket",)])

@@ -16,8 +16,9 @@ _ROUNDING = 1e-6
 def require(found: Any) -> None:
     """Raise ValueError if types or shapes of ``found``, a ``RailCompliance``, are not consistent,
     or if a number is not finite."""
-    if found.find_joints is not None:
-        raise ValueError("find_joints: given an array, expected none in a file")
+    for name in ("find_joints", "find_uncertainty"):
+        if getattr(found, name) is not None:
+            raise ValueError(f"{name}: given an array, expected none in a file")
     _require_plain(found)
     _require_dimensions("travel", found.travel, 1)
     _require_dimensions("rail", found.rail, 1, "iu")

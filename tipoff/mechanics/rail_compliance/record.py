@@ -257,9 +257,10 @@ class RailCompliance(Shown, Splined):
     @cached_property
     def softer(self) -> "RailCompliance | None":
         """The compliance that is larger by its own uncertainty; None if that is not known."""
-        if self.uncertainty is None or self.frequency_uncertainty is None:
+        own = self.known()
+        if own.uncertainty is None or own.frequency_uncertainty is None:
             return None
-        return replace(self, **softened.softened(self))
+        return replace(own, **softened.softened(own))
 
     def restricted(self, count: int, coupled: bool = True) -> "RailCompliance":
         """The compliance of a simpler model: only the first ``count`` patterns of the same degree,
@@ -268,8 +269,8 @@ class RailCompliance(Shown, Splined):
         return replace(self, **fewer.restricted(self, count, coupled))
 
     def save(self, path: str | Path) -> None:
-        """Write atomically, as arrays with their digest. The file holds ``joints``, which are
-        computed first if they are not known.
+        """Write atomically, as arrays with their digest. The file holds ``joints`` and the uncertainty,
+        which are computed first if they are not known.
 
         Args:
             path: file to write, ``.npz``.
@@ -277,7 +278,7 @@ class RailCompliance(Shown, Splined):
         Example:
             >>> tipoff.compliance(tipoff.load("tiny"), 8e-3).save("rail.npz")
         """
-        write_sealed(path, content(replace(self, joints=self._terms)))
+        write_sealed(path, content(replace(self.known(), joints=self._terms)))
 
     @classmethod
     def load(cls, path: str | Path) -> "RailCompliance":
@@ -313,4 +314,5 @@ def content(compliance: RailCompliance) -> bytes:
     """The file of what is known of a compliance, without its digest."""
     known = compliance.__getstate__()
     known.pop("find_joints")
+    known.pop("find_uncertainty")
     return stored.content(known)

@@ -42,6 +42,20 @@ def read(path: str | Path) -> dict[str, Any]:
     return found | {name: found[name].item() for name in {*_PLAIN} & {*found}}
 
 
+def plain_uncertainty(found: Mapping[str, Any]) -> dict[str, Any]:
+    """The uncertainty of a compliance, its fields, as JSON."""
+    known = found["uncertainty"]
+    return {**found, "uncertainty": None if known is None else known.tolist()}
+
+
+def uncertainty(found: Mapping[str, Any]) -> dict[str, Any]:
+    """The fields that ``plain_uncertainty`` made JSON of."""
+    known = found["uncertainty"]
+    return {name: found[name] for name in ("frequency_uncertainty", "not_known")} | {
+        "uncertainty": None if known is None else np.array(known)
+    }
+
+
 def read_joints(path: str | Path) -> JointTerms:
     """The joint terms in a file. Raises as ``read`` does."""
     return _joints(_arrays(path))

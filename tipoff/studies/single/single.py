@@ -146,14 +146,15 @@ def result_of(
             own_numerics(numerics) if request.model == COMPLIANT else "",
         )
     moved = error = None
-    own = row(condition, found, study.relative(study.store.path(request)), request)
+    path = study.relative(study.store.path(request))
     if request.fidelity == "lowfi" and found.outcome.rate is not None:
-        if found.cost["wall_s"] > _LONG and not model_error.is_kept(study.store, request):
-            say(text.first(own))
+        waits = found.cost["wall_s"] > _LONG or _waits_for_uncertainty(request)
+        if waits and not model_error.is_kept(study.store, request):
+            say(text.first(row(condition, found, path)))
         moved = disturbed.kept(study.store, request, found, study.settings.clearance_change)
         error = model_error.kept(study.store, request, found, moved)
     made = Single(
-        **vars(own) | {"range": error and error.range},
+        **vars(row(condition, found, path, request)) | {"range": error and error.range},
         implausible=tuple(request.scene.warnings),
         agreement=agreement,
         disturbed=moved,
@@ -163,6 +164,10 @@ def result_of(
     if detail:
         print("\n".join(text.lines(made, model(request), study, detail)))
     return asdict(made) | {"error": error and error.plain()}
+
+
+def _waits_for_uncertainty(request: Run) -> bool:
+    return request.compliance is not None and request.compliance.find_uncertainty is not None
 
 
 def own_numerics(numerics: Numerics) -> str:
