@@ -104,7 +104,7 @@ class Scene(inputs.Inputs, shown.Shown, launch.Timed, Table):
     mass_offset: MassOffsetTable | None = None
     #: State of payload and platform at ignition.
     initial: InitialTable | None = None
-    #: Latch that holds the travel until the thrust reaches a value.
+    #: Latch that holds the travel until the thrust reaches a value, or until a time.
     hold_down: HoldDownTable | None = Field(None, exclude_if=is_absent)
     #: Clearance, contact law and interface stiffness.
     contact: ContactTable | None = None
