@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import tipoff
+from tipoff.faults import Fault
 from tipoff.results import shown
 from tipoff.results.model_error import ModelError
 from tipoff.results.trajectory import Trajectory
@@ -115,6 +116,22 @@ def test_further_runs_take_the_kernel_of_the_run(walls, monkeypatch):
     monkeypatch.setattr(model_error, "execute", recorded)
     assert "pad patterns" in tipoff.run("tiny", compliance=walls).error.parts_deg_s
     assert kinds == {(walls.degree, None)}
+
+
+def test_a_further_run_without_a_place_of_rest_leaves_the_answer(walls, monkeypatch):
+    """Its fault is the reason why the error is not known. Control: a fault of the run itself is raised."""
+    fault = Fault("tiny", "initial.settled", "a force is left", "walls that hold the payload")
+
+    def refused(run):
+        raise tipoff.SceneError([fault])
+
+    monkeypatch.setattr(model_error, "execute", refused)
+    run = tipoff.run(TINY.condition("phi15"), compliance=walls)
+    assert run.outcome.rate is not None and run.error.rate_deg_s is None
+    assert "initial.settled" in run.error.not_known
+    # Control:
+    with pytest.raises(tipoff.SceneError, match="settled"):
+        tipoff.run(TINY.replace({"initial.settled": True}), compliance=walls)
 
 
 def test_a_factor_on_the_mounts_is_kept():

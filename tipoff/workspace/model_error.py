@@ -23,6 +23,7 @@ from functools import partial
 import numpy as np
 
 from tipoff import cache, sources
+from tipoff.faults import SceneError
 from tipoff.files import content_hash
 from tipoff.lowfi.numerics import MOST_CELLS
 from tipoff.mechanics import instant
@@ -87,7 +88,11 @@ def measured(run: Run, nominal: Trajectory, moved: Disturbed) -> ModelError:
             assert run.compliance is not None
             why = run.compliance.known().not_known or "not stated by this rail compliance"
             return ModelError(not_known=f"{name}: {why}")
-        change = instant.change(nominal.outcome, execute(changed).outcome)
+        try:
+            change = instant.change(nominal.outcome, execute(changed).outcome)
+        except SceneError as error:  # its payload has no place of rest
+            why = "; ".join(str(fault) for fault in error.faults)
+            return ModelError(not_known=f"{name}: the run that shows its effect fails ({why})")
         if change is None:
             return ModelError(not_known=f"{name}: the run that shows its effect has no rates")
         parts[name] = change
