@@ -8,7 +8,9 @@ from tests.studies import kept
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
 from tipoff.studies.agreement.stage import STAGE, Agreement
+from tipoff.studies.agreement.verdicts import Context, Gates, Refinement
 
+GATES = Gates(0.05, 1e-3, 0.1)
 KEPT: Agreement = kept.result(STAGE)
 ROW = replace(
     KEPT.compliant[0],
@@ -65,7 +67,7 @@ def table(**parts) -> Agreement:
     values = EMPTY | {
         "rail_compliance": None,
         "rail_modes": 4,
-        "gates": verdicts.Gates(0.05, 0.001, 0.1),
+        "gates": GATES,
         "element_size_m": 2e-3,
         "speedup": SPEEDUP,
         "speedup_compliant": SPEEDUP,
@@ -76,3 +78,20 @@ def table(**parts) -> Agreement:
 def document(**parts) -> dict:
     """The same as the content of its file."""
     return to_jsonable_python(table(**parts))
+
+
+def context(uncertainty=0.01, known=True) -> Context:
+    """The verdicts on ``phi15`` where the mesh changes its rates by this ``uncertainty`` (deg/s)."""
+    change = 0.0 if known else None
+    found = Refinement(
+        condition="phi15",
+        model="reference",
+        cause="mesh",
+        sizes=[2.0, 1.0],
+        rate_relative_l2=change,
+        settled_rate_change_deg_s=0.0,
+        uncertainty_deg_s=uncertainty,
+        order=1.0,
+        method="GCI",
+    )
+    return Context([], [found], GATES)

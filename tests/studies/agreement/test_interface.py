@@ -7,33 +7,14 @@ from functools import partial
 import numpy as np
 import pytest
 
-from tests.studies.agreement.made import ROW
+from tests.studies.agreement.made import ROW, context
 from tests.studies.synthetic import flight
 from tipoff.scenes import load
 from tipoff.studies.agreement import growth, interface, page, verdicts
-from tipoff.studies.agreement.verdicts import Context, Gates, Refinement
 from tipoff.studies.render import document
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.store import Store
 from tipoff.workspace.study import Study
-
-GATES = Gates(0.05, 1e-3, 0.1)
-
-
-def context(uncertainty=0.01, known=True):
-    change = 0.0 if known else None
-    found = Refinement(
-        condition="phi15",
-        model="reference",
-        cause="mesh",
-        sizes=[2.0, 1.0],
-        rate_relative_l2=change,
-        settled_rate_change_deg_s=0.0,
-        uncertainty_deg_s=uncertainty,
-        order=1.0,
-        method="GCI",
-    )
-    return Context([], [found], GATES)
 
 
 @pytest.fixture
