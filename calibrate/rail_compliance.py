@@ -45,12 +45,13 @@ def compliance(
     Takes seconds to minutes, once for a rail and its pads. Raises SceneError or MeshError.
     """
     size = element_size or own_size(scene.studies, scene.rail.length)
-    found = _computed(scene, size, degree, waits=True)
+    found = computed(scene, size, degree, waits=True)
     return found.finding(partial(_joints, scene, size, degree))
 
 
-def _computed(scene: Scene, size: float, degree: int, waits: bool) -> RailCompliance:
-    """As ``compliance``; a long rail has its uncertainty only if the caller ``waits`` for it."""
+def computed(scene: Scene, size: float, degree: int, waits: bool) -> RailCompliance:
+    """As ``compliance``, without terms for other mounts; a long rail has its uncertainty only if the
+    caller ``waits`` for it."""
     from tipoff.highfi import compliance as statics  # slow to load
     from tipoff.highfi import discretisation
 
@@ -157,7 +158,7 @@ def _made(
     )
     began = time.perf_counter()
     with places.progress_to(_Waiting(say, time.perf_counter)):
-        found = _computed(scene, element_size, degree, waits=False)
+        found = computed(scene, element_size, degree, waits=False)
     say(f"  computed in {time.perf_counter() - began:.3g} s, stored in {path}")
     return found
 

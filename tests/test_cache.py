@@ -97,11 +97,11 @@ def walls(folder, monkeypatch) -> Kept:
     """A rail compliance."""
     made, sizes = [], {MINE: 8e-3, THEIRS: 4e-3}
 
-    def compute(scene, element_size, degree):
+    def compute(scene, element_size, degree, waits):
         made.append(element_size)
         return replace(compliance(), travel=np.array([0.0, element_size]))
 
-    monkeypatch.setattr(rail_compliance, "compliance", compute)
+    monkeypatch.setattr(rail_compliance, "computed", compute)
     return Kept(
         lambda name: rail_compliance.kept(SCENE, folder, sizes[name]).hash,
         lambda name: rail_compliance.kept_file(SCENE, folder, sizes[name]),

@@ -30,6 +30,7 @@ CALIBRATION = tipoff.Calibration(
 FOUND = SimpleNamespace(
     flexibility=1.0,
     degree=2,
+    nodes=None,  # not a long rail
     accuracy=lambda: "",
     stated=lambda: None,
     finding=lambda joints: FOUND,
@@ -55,12 +56,12 @@ def found(monkeypatch, tmp_path):
     """What was done to find compliances, with element done (m), in place of their statics."""
     done = []
 
-    def compute(scene, element_size, degree):
+    def compute(scene, element_size, degree, waits):
         done.append(element_size)
         return FOUND
 
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    monkeypatch.setattr(rail_compliance, "compliance", compute)
+    monkeypatch.setattr(rail_compliance, "computed", compute)
     monkeypatch.setattr(rail_compliance, "KEPT", memory())
     return done
 

@@ -22,7 +22,7 @@ from tipoff.mechanics.outcome import Outcome
 from tipoff.studies.limits import page as limits_page
 from tipoff.studies.limits import stage as limits
 from tipoff.studies.limits import within
-from tipoff.studies.limits.options import MontecarloOptions as Limits
+from tipoff.studies.limits.options import LimitsOptions
 from tipoff.studies.populations import draws, population
 from tipoff.studies.populations.draws import Kept
 from tipoff.studies.populations.population import Surrogate
@@ -44,7 +44,7 @@ VIBRATING = replace(
 MODAL = 1.3  # times the rate without modes
 PER_RADIAN, PER_METRE = math.radians(20.0) / math.radians(0.2), math.radians(20.0) / 0.4e-3
 OPTIONS = Cases(cases=120, limits=("8 deg/s",))
-CERTIFY = Limits(("8 deg/s",), probability=0.9, cases=120, certify=20)
+CERTIFY = LimitsOptions(("8 deg/s",), probability=0.9, cases=120, certify=20)
 
 
 def rates(row, modes: int) -> list[float]:
@@ -224,7 +224,7 @@ def test_the_search_its_margin_and_its_check_are_of_one_model(study, watch, monk
     assert found.certificate.cases == 1200 and len(runs.modes) > 3 * first
     limit = math.radians(8.0) / (MODAL if chosen else 1.0)
     for name in ("thrust_eccentricity", "mass_eccentricity"):
-        cases = within.source(REFERENCE, {name: 1.0}, 120, CERTIFY.seed).rows(0, 120)
+        cases = within.source(REFERENCE, {name: 1.0}, 120, within.SEED).rows(0, 120)
         key = f"{within.ERRORS[name].key}.axial"
         sizes = sorted(abs(PER_METRE * drawn[key]) for drawn in cases)
         exact = limit / sizes[-1 - found.allowed]
@@ -240,7 +240,7 @@ def test_the_search_is_repeated_until_its_own_result_needs_no_more_modes(study, 
     """Pilots within four results choose 2, 5, 4: the number does not fall back, or the search might
     not end."""
     runs = watch(2, 5, 4)
-    found = limits.run(study, Limits(("8 deg/s",), probability=0.9, cases=120)).result
+    found = limits.run(study, LimitsOptions(("8 deg/s",), probability=0.9, cases=120)).result
     assert runs.pilots == 3 * pilot.PILOT and found.modes == 5
     assert found.modes_why.startswith("5: ") and list(dict.fromkeys(runs.modes)) == [0, 2, 5]
 
