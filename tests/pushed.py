@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.exact.spring import end_of_stroke
+from tests.highfi.support import CENTRED, IMMOVABLE, tiny
 from tipoff.kernels import rotation
 from tipoff.results.trajectory import Trajectory
 
@@ -25,6 +26,21 @@ MASSES = (0.3, 0.5, 0.2, 0.4)  # kg, of the pushers of these springs
 TILTS = ((0.02, 0.3), (0.03, 2.0), (0.0, 0.0), (0.025, 4.0))
 ENOUGH = 1e-4  # s, after the last stroke
 PUSHER = 0.5  # kg
+
+
+def pushed(thrust: dict, duration: float, platform: dict = IMMOVABLE, **more):
+    """A payload without contact that springs push from a platform; by default it does not move.
+    ``more``: further values of the scene."""
+    return tiny(
+        duration=duration,
+        output={"interval": duration / 5},
+        contact=None,
+        friction=None,
+        platform=platform,
+        thrust_offset=CENTRED,
+        thrust=thrust,
+        **more,
+    )
 
 
 def springs(numbers: Sequence[tuple] = UNEQUAL) -> dict:

@@ -6,8 +6,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+import tests.pushed
 from tests.exact.spring import end_of_stroke
-from tests.highfi.support import CENTRED, COARSE, IMMOVABLE, tiny
+from tests.highfi.support import COARSE, IMMOVABLE
 from tests.lowfi.support import numerics
 from tests.pushed import (
     MASSES,
@@ -67,18 +68,9 @@ PLATFORMS = pytest.mark.parametrize("platform", [IMMOVABLE, LIGHT], ids=["fixed"
 
 
 def pushed(thrust: dict, duration: float, platform: dict = IMMOVABLE):
-    """A payload without contact that springs push from a platform; by default it does not move."""
-    return tiny(
-        duration=duration,
-        output={"interval": duration / 5},
-        contact=None,
-        friction=None,
-        platform=platform,
-        thrust_offset=CENTRED,
-        thrust=thrust,
-        payload__mass=MASS,
-        payload__inertia=INERTIA,
-    )
+    """``tests.pushed.pushed`` with the mass and inertia of the closed forms."""
+    heavy = {"payload__mass": MASS, "payload__inertia": INERTIA}
+    return tests.pushed.pushed(thrust, duration, platform, **heavy)
 
 
 @pytest.mark.case("O61")

@@ -3,26 +3,10 @@
 import numpy as np
 import pytest
 
-from tests.highfi.support import CENTRED, COARSE, IMMOVABLE, parts, tiny
-from tests.pushed import (
-    SPRING,
-    springs,
-)
+from tests.highfi.support import COARSE, parts
+from tests.pushed import SPRING, pushed, springs
 from tipoff import highfi
 from tipoff.highfi.dynamics.step_limit import of_pushers
-
-
-def pushed(thrust: dict, duration: float, platform: dict = IMMOVABLE):
-    """A payload without contact that springs push from a platform; by default it does not move."""
-    return tiny(
-        duration=duration,
-        output={"interval": duration / 5},
-        contact=None,
-        friction=None,
-        platform=platform,
-        thrust_offset=CENTRED,
-        thrust=thrust,
-    )
 
 
 def test_the_step_limit_includes_the_springs():

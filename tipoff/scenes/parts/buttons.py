@@ -146,7 +146,7 @@ def _slot(made: Made, first: ButtonTable) -> Slot | None:
 
 def _placed(made: Made, sized: list[Button], slot: Slot, radius: float, source: str) -> None:
     """Place of the profile, and the pads on it, whose dimensions have a ``source``."""
-    first, rail = sized[0], made.tables["rail"]
+    first = sized[0]
     edge = 0.5 * slot.width
     missing = {
         "at": [text(each) for each in at(first, radius, slot)],
@@ -156,11 +156,9 @@ def _placed(made: Made, sized: list[Button], slot: Slot, radius: float, source: 
         "thickness": text(slot.lip),
         "stretch": usual.STRETCH,
     }
-    made.put_absent("rail", missing, source)
-    if "material" not in rail:
-        made.put("rail.material", dict(RAIL_MATERIAL), RAIL_SOURCE)
-    if (found := guided.place(rail, made)) is not None:
-        y, z, gap = found
+    placed = guided.rail(made, missing, (RAIL_MATERIAL, RAIL_SOURCE), source)
+    if placed is not None:
+        y, z, gap = placed
         made.put("pads", [pad for each in sized for pad in pads(each, (y, z), slot, gap)], source)
 
 

@@ -75,10 +75,17 @@ def slides(
         made.put_absent("friction", FRICTION, "assumed")
 
 
-def place(rail: Mapping, made: Made) -> tuple[float, float, float] | None:
-    """Place (m) of the section of a ``rail`` along Y and Z, and its clearance (m); None for a value that
-    the scene refuses."""
-    at, gap = rail["at"], made.length(rail["clearance"])
+def rail(
+    made: Made, missing: Mapping[str, Any], material: tuple[Mapping, str], source: str
+) -> tuple[float, float, float] | None:
+    """Give ``[rail]`` what it does not state: values ``missing`` that have a ``source``, and a ``material``
+    with its own one. Returns the place (m) of its section along Y and Z, and its clearance (m); None for
+    a value that the scene refuses."""
+    table, (values, of_material) = made.tables["rail"], material
+    made.put_absent("rail", missing, source)
+    if "material" not in table:
+        made.put("rail.material", dict(values), of_material)
+    at, gap = table["at"], made.length(table["clearance"])
     if not isinstance(at, list) or len(at) != 2 or gap is None:
         return None
     y, z = map(made.length, at)

@@ -71,7 +71,7 @@ def expand(made: Made) -> None:
     made.faults.extend(faults)
     if faults:
         return
-    first, rail = sized_[0], made.tables["rail"]
+    first = sized_[0]
     inside, half = rod_side(rod)
     slant = 0.5 * (inside + half)  # middle of a side between two walls
     play = text(0.5 * (first.inner_diameter - rod))
@@ -84,10 +84,8 @@ def expand(made: Made) -> None:
         "thickness": text(rod),
         "stretch": usual.STRETCH,
     }
-    made.put_absent("rail", missing, source)
-    if "material" not in rail:
-        made.put("rail.material", dict(ROD_MATERIAL), ROD_SOURCE)
-    if (placed := guided.place(rail, made)) is not None:
+    placed = guided.rail(made, missing, (ROD_MATERIAL, ROD_SOURCE), source)
+    if placed is not None:
         y, z, gap = placed
         made.put("pads", [pad for each in sized_ for pad in pads(each, (y, z), rod, gap)], source)
     guided.slides(made, {"clearance": play}, found[0].material, source, "lugs")

@@ -117,14 +117,14 @@ def refinements(study: Study, names: Iterable[str] | None = None) -> list[Refine
     refined: no single run judges such a condition."""
     wanted = {name: groups(study, name) for name in (names or study.conditions)}
     by_mesh = _measured(study, [(name, MESH, found[MESH]) for name, found in wanted.items()])
-    open_ones = [
+    further = [
         (item.condition, cause, group)
         for item in by_mesh
         if item.uncertainty_deg_s is not None and item.uncertainty_deg_s <= CONVERGED_DEG_S
         for cause, group in wanted[item.condition].items()
         if cause != MESH
     ]
-    return by_mesh + _measured(study, open_ones)
+    return by_mesh + _measured(study, further)
 
 
 def _measured(study: Study, wanted: Sequence[tuple[str, str, Group]]) -> list[Refinement]:
