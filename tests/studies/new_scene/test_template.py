@@ -196,6 +196,30 @@ def test_a_deployer_has_the_given_numbers_and_the_rest_of_the_catalogue(tmp_path
     assert scene.contact != own.contact and scene.thrust != own.thrust
 
 
+def test_a_refused_scene_leaves_no_file_beside_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert call("new", "own.toml", "--rocket", "--rail-length", "10 mm").exit_code == 2
+    assert list(tmp_path.iterdir()) == []
+    # Control: the same with a rail that the buttons are on.
+    assert call("new", "own.toml", "--rocket", "--rail-length", "3 m").exit_code == 0
+    beside = {path.name for path in tmp_path.iterdir()}
+    assert "own_errors.toml" in beside and len(beside) > 2
+
+
+def test_files_of_another_scene_are_neither_taken_nor_replaced(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert call("new", "own.toml", "--deployer", "3u", "--mass", "4.5 kg").exit_code == 0
+    errors = tmp_path / "own_errors.toml"
+    (tmp_path / "own.toml").unlink()
+    before = errors.read_text()
+    refused = call("new", "own.toml", "--deployer", "3u", "--mass", "3 kg")
+    assert refused.exit_code == 2 and "own_errors.toml" in refused.output
+    assert errors.read_text() == before and not (tmp_path / "own.toml").exists()
+    # Control: the same numbers give the same file, which may stay.
+    assert call("new", "own.toml", "--deployer", "3u", "--mass", "4.5 kg").exit_code == 0
+    assert errors.read_text() == before
+
+
 # Typed here a second time on purpose: CubeSat Design Specification, Rev. 14.1; 16U is assumed. mm, kg
 CUBESATS = {
     "1u": (113.5, 100.0, 100.0, 2.0),

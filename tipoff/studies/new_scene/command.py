@@ -132,9 +132,9 @@ def new(
     def work() -> Output:
         from tipoff.faults import together
         from tipoff.files import write_text
-        from tipoff.studies.new_scene import template
+        from tipoff.studies.new_scene import from_catalogue, template
 
-        _, text = together(
+        _, (text, beside_it) = together(
             lambda: _require_new(file),
             lambda: (
                 _of_design(
@@ -152,11 +152,15 @@ def new(
                     {"pads": pads, "rocket": both or None},
                 )
                 if kind
-                else template.text(file.stem, _numbers(given, thrust_curve, pads, rod), file.parent)
+                else (
+                    template.text(file.stem, _numbers(given, thrust_curve, pads, rod), file.parent),
+                    {},
+                )
             ),
         )
-        _require_scene(text, file)
-        write_text(file, text)
+        with from_catalogue.written(file.parent, beside_it):
+            _require_scene(text, file)
+            write_text(file, text)
         return Output({"scene": file.stem, "file": str(file), "text": text}, _next)
 
     guarded(work, json_)
@@ -168,11 +172,10 @@ def _from_catalogue(
     given: dict[str, str | None],
     thrust_curve: Path | None,
     others: dict[str, object],
-) -> str:
-    """The scene of a ``kind`` of the catalogue; files that it names are written beside ``file``. Raises
+) -> tuple[str, dict[str, str]]:
+    """The scene of a ``kind`` of the catalogue, and text by name of the files that it names. Raises
     SceneError, every fault listed."""
     from tipoff.faults import SceneError
-    from tipoff.files import write_text
     from tipoff.studies.new_scene import deployer, from_catalogue, rocket, template
 
     like = from_catalogue.KINDS[kind]
@@ -209,11 +212,7 @@ def _from_catalogue(
     beside_it = {} if curve else from_catalogue.files(like)
     if errors := rocket.errors(numbers) if is_rocket else deployer.errors(kind, numbers):
         beside_it[from_catalogue.errors_file(file.stem)] = errors
-    if not file.exists():
-        for name, content in beside_it.items():
-            if not (file.parent / name).exists():
-                write_text(file.parent / name, content)
-    return text
+    return text, beside_it
 
 
 def _require_scene(text: str, file: Path) -> None:
@@ -256,11 +255,12 @@ def _next(found: dict) -> list[str]:
     ]
 
 
-def _of_design(file: Path, designs: list[Path], others: list, is_rocket: bool) -> str:
-    """The scene of a design, and of a table of its simulation; its thrust and its errors are written beside
-    ``file``. Raises SceneError."""
+def _of_design(
+    file: Path, designs: list[Path], others: list, is_rocket: bool
+) -> tuple[str, dict[str, str]]:
+    """The scene of a design, and of a table of its simulation, and text by name of the files of its thrust and
+    its errors. Raises SceneError."""
     from tipoff.faults import Fault, SceneError
-    from tipoff.files import write_text
     from tipoff.studies.new_scene import from_catalogue, rocket
 
     given = " ".join(map(str, designs))
@@ -272,11 +272,9 @@ def _of_design(file: Path, designs: list[Path], others: list, is_rocket: bool) -
         raise SceneError([Fault("DESIGN.ork", "files", given, expected)])
     found = _design(*designs)
     curve = f"{file.stem}_thrust.csv"
-    if not file.exists():
-        write_text(file.parent / curve, rocket.csv(found))
-        errors = rocket.errors({"mass": found.mass}, 90.0 - found.rail_angle)
-        write_text(file.parent / from_catalogue.errors_file(file.stem), errors)
-    return rocket.of_design(file.stem, found, curve)
+    errors = rocket.errors({"mass": found.mass}, 90.0 - found.rail_angle)
+    beside_it = {curve: rocket.csv(found), from_catalogue.errors_file(file.stem): errors}
+    return rocket.of_design(file.stem, found, curve), beside_it
 
 
 def _design(design: Path, table: Path | None = None) -> "Design":

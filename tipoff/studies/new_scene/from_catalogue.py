@@ -3,14 +3,15 @@ and its random errors. These are about its own numbers, so a scene with other on
 with those errors in proportion.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 import tomlkit
 
 from tipoff.faults import Fault, SceneError
-from tipoff.files import read_input
+from tipoff.files import read_input, write_text
 from tipoff.scenes import overrides
 from tipoff.scenes.parts.deployer import CUBESATS
 from tipoff.scenes.scene import CATALOG, load
@@ -102,6 +103,29 @@ def files(kind: Kind) -> dict[str, str]:
     document = tomlkit.parse((CATALOG / f"{kind.scene}.toml").read_text(encoding="utf-8"))
     named = document["thrust"].get("file")
     return {named: read_input(CATALOG / Path(named)).decode("utf-8")} if named else {}
+
+
+@contextmanager
+def written(folder: Path, texts: Mapping[str, str]) -> Iterator[None]:
+    """Text by name as files of a folder. They are removed again if what follows fails. Raises SceneError if
+    one is there with another text: it may be of another scene, or changed by hand."""
+    made, faults = [], []
+    for name, text in texts.items():
+        if not (folder / name).exists():
+            made.append(name)
+        elif read_input(folder / name) != text.encode():
+            expected = "a file that is not there yet: the new scene has one with this name"
+            faults.append(Fault(name, "file", str(folder / name), expected))
+    if faults:
+        raise SceneError(faults)
+    try:
+        for name in made:
+            write_text(folder / name, texts[name])
+        yield
+    except BaseException:
+        for name in made:
+            (folder / name).unlink(missing_ok=True)
+        raise
 
 
 def _of_others(kind: Kind, names: Sequence[str]) -> list[Fault]:
