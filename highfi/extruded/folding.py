@@ -84,15 +84,17 @@ def _layout(even: int) -> Layout:
 
 EQUAL, UNEQUAL = _layout(2), _layout(3)  # of equal layers, and of layers of any lengths
 
-# Number of groups of each kind in the most frequent columns of equal layers: inside a section, on a
-# side along y, on a side along z; None for any other number.
-PATTERNS = (
+# Number of groups of each kind in columns that have code of their own; None for any number. Most columns are
+# inside a section, on a side along y, on a side along z, or have no neighbours that are mirror images.
+_PATTERNS: tuple[tuple[int | None, ...], ...] = (
     (1, 1, 0, 1, 0, 1, 0, 0, 0),
     (0, 0, 2, 0, 0, 0, 2, 0, 0),
     (0, 0, 0, 0, 2, 0, 0, 2, 0),
+    (0, 0, 0, 0, 0, 0, 0, 0, None),
+    (None,) * len(KINDS),
 )
-# Columns that have code of their own.
-VARIANTS = (*((EQUAL, pattern) for pattern in (*PATTERNS, None)), (UNEQUAL, None))
+# A column has the first one that fits it.
+VARIANTS = tuple((layout, pattern) for layout in (EQUAL, UNEQUAL) for pattern in _PATTERNS)
 
 
 class Groups(NamedTuple):
@@ -136,17 +138,22 @@ def fold(
         np.concatenate([[0], np.cumsum(counts @ each)[:-1]]).astype(np.int64) for each in size
     )
     flat = [group for kinds in found for groups in kinds for group in groups]
-    variant = [
-        VARIANTS.index((layout, own if (layout, own := tuple(each)) in VARIANTS else None))
-        for each in counts.tolist()
-    ]
     return Groups(
-        variant=np.array(variant),
+        variant=np.array([_variant(layout, each) for each in counts.tolist()]),
         counts=counts,
         members=neighbour[np.concatenate([members for members, _ in flat])].astype(np.int64),
         numbers=np.concatenate([values for _, values in flat]),
         first_member=first_member,
         first_number=first_number,
+    )
+
+
+def _variant(layout: Layout, counts: list[int]) -> int:
+    """Index of the first of VARIANTS that fits a column with these ``counts`` of groups."""
+    return next(
+        k
+        for k, (own, pattern) in enumerate(VARIANTS)
+        if own == layout and all(given in (None, count) for given, count in zip(pattern, counts))
     )
 
 

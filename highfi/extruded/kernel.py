@@ -10,10 +10,10 @@ and for layers of any length h(k), from node k to k+1, with the weights v and w 
            + h(k-1) s(k-1) - v(k-1) q(k-1) - w(k-1) r(k-1) - o(k-1)
            + h(k) s(k+1) - v(k) q(k+1) - w(k) r(k+1) + o(k+1)
 
-The sums of 16 layers, nine or twelve, stay in vector registers during the loop over the neighbours; so
-do the values of the 16 layers before that the filter needs. Neighbours that are mirror images are folded
-into one (see ``folding``). Numba does not keep the sums in registers in a Python loop, so this loop
-is written as LLVM code. A processor with narrower vectors splits them.
+The sums, nine or twelve, stay in vector registers during the loop over the neighbours: those of 16 layers
+on a processor with vectors of 512 bits and 32 registers, those of four layers on others (``vectors.fitting_part``). The
+result is the same to the last bit. Neighbours that are mirror images are folded into one (see ``folding``).
+Numba does not keep the sums in registers in a Python loop, so this loop is written as LLVM code.
 """
 
 from typing import NamedTuple
@@ -26,7 +26,7 @@ from numba.extending import intrinsic
 
 from tipoff.highfi.extruded.folding import EQUAL, KINDS, VARIANTS, Layout
 from tipoff.highfi.extruded.mesh import LANES
-from tipoff.highfi.extruded.vectors import INTEGER, WIDTH, ZERO, Vectors
+from tipoff.highfi.extruded.vectors import INTEGER, WIDTH, ZERO, Part, Vectors, fitting_part
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 
@@ -61,26 +61,35 @@ class _Sweep:
     """Writes the code that sets the force of one column with this ``layout``. Fields of ``arrays`` are
     LLVM pointers, fields of ``place`` LLVM integers."""
 
-    def __init__(self, builder, layout: Layout, arrays: _Arrays, place: _Place):
+    def __init__(self, builder, layout: Layout, arrays: _Arrays, place: _Place, part: Part):
         self.builder, self.code, self.arrays, self.place = builder, Vectors(builder), arrays, place
-        self.layout = layout
+        self.layout, self.part, self.narrow = layout, part, Vectors(builder, part.width)
         self.held = [
-            [self.code.variable() for _ in range(_HALVES)] for _ in range(3 * layout.blocks)
+            [self.narrow.variable() for _ in range(part.vectors)] for _ in range(3 * layout.blocks)
         ]
+        self.kept = [
+            self.code.numbers(LANES) for _ in range(3 * layout.blocks)
+        ]  # sums of 16 layers
         self.below, self.pending, self.turning = (
             [self.code.variable() for _ in range(3)] for _ in range(3)
         )
 
     def write(self, pattern):
-        """All layers; with a ``pattern`` the numbers of groups are constants of the code."""
+        """All layers; numbers of groups in the ``pattern`` are constants of the code."""
         self._clear(self.below, self.pending, self.turning)
         start, step = ir.Constant(INTEGER, 0), ir.Constant(INTEGER, LANES)
         with cgutils.for_range_slice(self.builder, start, self.place.layers, step, INTEGER) as (
             layer,
             _,
         ):
-            self._clear(*self.held)
-            self._add_groups(layer, pattern)
+            size = self.part.width * self.part.vectors
+            if size == LANES:
+                self._sum_part(layer, start, pattern)
+            else:
+                with cgutils.for_range_slice(
+                    self.builder, start, step, ir.Constant(INTEGER, size), INTEGER
+                ) as (first, _):
+                    self._sum_part(self.builder.add(layer, first), first, pattern)
             self._finish(layer)
         self._store(
             [self.builder.load(part) for part in self.pending],
@@ -93,6 +102,17 @@ class _Sweep:
             )
             self.code.write(total, self.arrays.lanes, place)
 
+    def _sum_part(self, layer, first, pattern):
+        """Sums of the layers of a part, from ``layer`` on; ``first`` is their place among the 16."""
+        for parts in self.held:
+            for part in parts:
+                self.builder.store(self.narrow.zero, part)
+        self._add_groups(layer, pattern)
+        for parts, kept in zip(self.held, self.kept):
+            for k, part in enumerate(parts):
+                at = self.code.plus(first, k * self.part.width)
+                self.narrow.write(self.builder.load(part), kept, at)
+
     def _clear(self, *variables):
         for parts in variables:
             for part in parts:
@@ -101,15 +121,12 @@ class _Sweep:
     def _add_groups(self, layer, pattern):
         code, member, number = self.code, self.place.first_member, self.place.first_number
         for k, (group, used) in enumerate(zip(KINDS, self.layout.used)):
-            count = (
-                ir.Constant(INTEGER, pattern[k])
-                if pattern
-                else code.number(self.arrays.counts, code.plus(self.place.kind, k))
-            )
-            if pattern:
+            if pattern[k] is not None:
+                count = ir.Constant(INTEGER, pattern[k])
                 for index in range(pattern[k]):
                     self._add_group(k, layer, member, number, ir.Constant(INTEGER, index))
             else:
+                count = code.number(self.arrays.counts, code.plus(self.place.kind, k))
                 with cgutils.for_range(self.builder, count, intp=INTEGER) as loop:
                     self._add_group(k, layer, member, number, loop.index)
             member = self.builder.add(member, code.times(count, group.members))
@@ -129,21 +146,23 @@ class _Sweep:
         for component in range(3):
             rows = [builder.add(start, code.times(self.place.plane, component)) for start in starts]
             factors = {
-                places[n]: code.spread(code.number(self.arrays.numbers, code.plus(own, k)))
+                places[n]: self.narrow.spread(code.number(self.arrays.numbers, code.plus(own, k)))
                 for k, n in enumerate(used)
                 if places[n].column == component
             }
-            for half in range(_HALVES):
+            for k in range(self.part.vectors):
+                starts_of_vectors = [code.plus(row, self.part.width * k) for row in rows]
                 folded = self._fold(
                     group,
-                    [code.read(self.arrays.values, code.plus(row, WIDTH * half)) for row in rows],
+                    [self.narrow.read(self.arrays.values, each) for each in starts_of_vectors],
                 )
                 for place, factor in factors.items():
                     total, value = (
-                        self.held[3 * place.block + place.row][half],
+                        self.held[3 * place.block + place.row][k],
                         folded[tuple(map(place.odd, group.folded))],
                     )
-                    builder.store(code.multiply_add(factor, value, builder.load(total)), total)
+                    added = self.narrow.multiply_add(factor, value, builder.load(total))
+                    builder.store(added, total)
 
     def _fold(self, group, parts):
         """Sums and differences of the members' values, by their parity in each folded axis."""
@@ -193,7 +212,7 @@ class _Sweep:
     def sums(self, component, half):
         """One component of the sums of all blocks, of eight layers."""
         return [
-            self.builder.load(self.held[3 * block + component][half])
+            self.code.read(self.kept[3 * block + component], ir.Constant(INTEGER, WIDTH * half))
             for block in range(self.layout.blocks)
         ]
 
@@ -269,7 +288,8 @@ def _column(typing, arrays, place):
             )
         )
         at = _Place(*cgutils.unpack_tuple(builder, arguments[1]))
-        sweeps = {layout: _Sweep(builder, layout, pointers, at) for layout, _ in VARIANTS}
+        size = fitting_part(context.codegen())
+        sweeps = {layout: _Sweep(builder, layout, pointers, at, size) for layout, _ in VARIANTS}
         last, after = (builder.append_basic_block(name) for name in ("variant", "after"))
         switch = builder.switch(at.variant, last)
         for number, (layout, pattern) in enumerate(VARIANTS):

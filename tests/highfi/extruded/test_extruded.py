@@ -3,13 +3,15 @@ extruded."""
 
 from dataclasses import replace
 
+import numba
 import numpy as np
 import pytest
 
 from tests.highfi.blocks import ALUMINIUM, block
-from tipoff.highfi.extruded import folding
+from tipoff.highfi.extruded import folding, kernel
 from tipoff.highfi.extruded import mesh as extruded
 from tipoff.highfi.extruded.kernel import column_force
+from tipoff.highfi.extruded.vectors import Part
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.statics import assembly
 from tipoff.highfi.statics.operator import internal_force
@@ -55,7 +57,7 @@ def groups_of(mesh):
     )
 
 
-def both_forces(mesh):
+def both_forces(mesh, column_force=column_force):
     """Internal force (n,3) of one random displacement by columns and by elements."""
     operator = assembly.build(mesh, **ALUMINIUM)
     columns, number = extruded.find(mesh.points, operator)
@@ -100,6 +102,19 @@ def both_forces(mesh):
 def test_columns_give_the_force_of_the_elements(mesh):
     force, number, expected = both_forces(mesh)
     assert np.abs(force[:, number].T - expected).max() <= 1e-13 * np.abs(expected).max()
+
+
+def test_the_force_does_not_depend_on_the_width_of_the_registers(monkeypatch):
+    """To the last bit, for equal layers and for two lengths, in columns with and without mirror images."""
+    meshes = [
+        read(l_rail.build(l_rail.LRailGeometry(fillet=0.002), size)) for size in (0.004, 0.008)
+    ]
+    forces = []
+    for own in (Part(8, 2), Part(4, 1), Part(4, 2)):
+        monkeypatch.setattr(kernel, "fitting_part", lambda codegen, own=own: own)
+        compiled = numba.njit(column_force.py_func)
+        forces.append(np.concatenate([both_forces(mesh, compiled)[0] for mesh in meshes], axis=1))
+    assert (forces[1] == forces[0]).all() and (forces[2] == forces[0]).all()
 
 
 def test_mirrored_neighbours_share_their_products():
