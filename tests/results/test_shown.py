@@ -47,7 +47,7 @@ def test_one_line_of_a_sensitive_run_has_its_ranges(run):
         lost=0,
     )
     sensitive = replace(run, error=ModelError(range=near))
-    assert "v_x 6.00 to 6.20 m/s, rates -1.00 to 1.00, 2.00 to 4.00, -8.0 to 8.0 deg/s" in repr(
+    assert "v_x 6.000 to 6.200 m/s, rates -1.00 to 1.00, 2.00 to 4.00, -8.0 to 8.0 deg/s" in repr(
         sensitive
     )
     single = ", ".join(f"{math.degrees(rate):.3f}" for rate in run.outcome.rate)
