@@ -11,7 +11,7 @@ import tipoff
 from tests.lowfi.support import IMMOVABLE, WEIGHTLESS
 from tipoff import highfi, lowfi, scenes
 from tipoff.results import unfinished
-from tipoff.scenes import SceneError, implausible, launch, provenance, uncertainty
+from tipoff.scenes import SceneError, implausible, launch, plausibility, provenance, uncertainty
 from tipoff.studies.cli import app
 from tipoff.studies.new_scene import template
 from tipoff.studies.new_scene.template import Numbers
@@ -194,6 +194,31 @@ def test_a_deployer_has_the_given_numbers_and_the_rest_of_the_catalogue(tmp_path
     assert (same.payload.mass, same.payload.size) == (own.payload.mass, own.payload.size)
     assert same.studies.errors == "cubesat_3u" and not (tmp_path / "same_errors.toml").exists()
     assert scene.contact != own.contact and scene.thrust != own.thrust
+
+
+@pytest.mark.parametrize("rail", ["1 m", "3.9 m", "11 m", "14 m"])
+def test_a_rail_of_any_length_is_held_near_its_open_end(tmp_path, monkeypatch, rail):
+    """Control: with 0.6 m more it is not."""
+    monkeypatch.chdir(tmp_path)
+    assert call("new", "own.toml", "--rocket", "--rail-length", rail).exit_code == 0
+    scene = scenes.load("own.toml")
+    assert plausibility.warnings(scene) == []
+    file = tmp_path / "own.toml"
+    file.write_text(
+        file.read_text().replace(f'end = "{rail}"', f'end = "{float(rail[:-2]) + 0.6:g} m"')
+    )
+    assert "are not held" in str(plausibility.warnings(scenes.load("own.toml")))
+
+
+@pytest.mark.parametrize(
+    "size, options",
+    [("3.7 m x 0.15 m", ("--rocket",)), ("1.6 m", ("--rocket",)), ("0.4 m x 0.2 m x 0.2 m", ())],
+)
+def test_sides_are_separated_by_commas(tmp_path, monkeypatch, size, options):
+    monkeypatch.chdir(tmp_path)
+    found = call("new", "own.toml", *options, "--size", size)
+    assert found.exit_code == 2 and "for example" in found.stderr
+    assert '"1.6 m, 80 mm"' in found.stderr if options else "350 mm, 200 mm" in found.stderr
 
 
 def test_a_refused_scene_leaves_no_file_beside_it(tmp_path, monkeypatch):

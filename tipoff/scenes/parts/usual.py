@@ -8,12 +8,13 @@ STRETCH = 3  # of the elements along a rail with buttons or lugs
 # m, fractions of an inch in which rods are sold, and the part of a lug that a rod fills in any other case
 RODS, FILLED = tuple(0.0254 * share for share in (1 / 8, 3 / 16, 1 / 4, 3 / 8, 1 / 2)), 0.92
 MOUNT, SPAN = 0.06, 1.5  # m: length of a clamp, and at most between two of them
+BEYOND = 0.45  # m, of rail that is not held at its open end
 
 
 def mounts(rail: float) -> list[tuple[float, float]]:
     """Start and end (m) of the clamps along a ``rail`` (m), on multiples of their length."""
     count = max(3, math.ceil(rail / SPAN) + 1)
-    last = 0.9 * rail - MOUNT
+    last = rail - min(0.1 * rail, BEYOND) - MOUNT
     places = {
         max(MOUNT * round(last * number / (count - 1) / MOUNT), 0.0) for number in range(count)
     }

@@ -11,6 +11,7 @@ from tipoff.studies.commands.options import Json
 from tipoff.studies.commands.running import Output, guarded, quantity
 
 if TYPE_CHECKING:
+    from tipoff.faults import SceneError
     from tipoff.formats.designs.openrocket import Design
 
 # option, unit, question, answer if none is given
@@ -82,8 +83,8 @@ def new(
         typer.Option(
             "--rocket",
             help="Write a rocket with two buttons in the slot of a T-slot rail, instead of a launcher. Takes "
-            "--mass, --size for its length and diameter, --rail-length, --clearance and --thrust-curve for its "
-            "motor.",
+            '--mass, --size for its length and diameter ("1.6 m, 80 mm"), --rail-length, --clearance and '
+            "--thrust-curve for its motor.",
         ),
     ] = False,
     rod: Annotated[
@@ -308,22 +309,37 @@ def _design(design: Path, table: Path | None = None) -> "Design":
 
 def _length_and_diameter(text: str) -> tuple[float, float]:
     """Length and diameter (m) of a rocket from its size. Raises SceneError."""
+    sides = _lengths(text, "1.6 m, 80 mm", "a length and a diameter", (2, 3))
+    if sides[1] != sides[-1]:
+        raise _no_size(text, "a length and a diameter", "1.6 m, 80 mm")
+    return sides[0], sides[1]
+
+
+def _lengths(text: str, example: str, words: str, counts: tuple[int, ...]) -> list[float]:
+    """Lengths (m) above zero, separated by commas. Raises SceneError with an ``example`` of the ``words`` if
+    their number is not one of ``counts``."""
+    from tipoff.units import to_si
+
+    try:
+        sides = [to_si(part.strip(), "m") for part in text.split(",")]
+    except ValueError:
+        raise _no_size(text, words, example) from None
+    if len(sides) not in counts or min(sides) <= 0.0:
+        raise _no_size(text, words, example)
+    return sides
+
+
+def _no_size(text: str, words: str, example: str) -> "SceneError":
     from tipoff.faults import Fault, SceneError
 
-    example = "1.6 m, 80 mm"
-    found = [quantity("--size", part.strip(), "m", "80 mm") for part in text.split(",")]
-    sides = [side for side in found if side is not None and side > 0.0]
-    if len(sides) != len(found) or len(sides) not in (2, 3) or sides[1] != sides[-1]:
-        expected = f'a length and a diameter, for example "{example}"'
-        raise SceneError([Fault("--size", "value", text, expected)])
-    return sides[0], sides[1]
+    return SceneError([Fault("--size", "value", text, f'{words}, for example "{example}"')])
 
 
 def _numbers(
     given: dict[str, str | None], thrust_curve: Path | None, pads: int | None, rod: str | None
 ):
     """The numbers of the new scene in SI. Raises SceneError, every fault listed."""
-    from tipoff.faults import Fault, SceneError, together
+    from tipoff.faults import together
     from tipoff.studies.new_scene.template import Numbers
 
     def read(name: str):
@@ -331,12 +347,7 @@ def _numbers(
         text, option = given[name] or default, _option_name(name)
         if name != "size":
             return quantity(option, text, unit, default)
-        example = default.split(",")[0]
-        sides = [quantity(option, part.strip(), unit, example) for part in text.split(",")]
-        if len(sides) != 3:
-            expected = 'three lengths, for example "350 mm, 200 mm, 200 mm"'
-            raise SceneError([Fault(option, "value", text, expected)])
-        return tuple(sides)
+        return tuple(_lengths(text, default, "three lengths", (3,)))
 
     *found, _, _, _ = together(
         *((lambda name=name: read(name)) for name in _ASKED),
