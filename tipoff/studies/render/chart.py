@@ -168,7 +168,11 @@ def save(figure, stem: Path, made: dict | None) -> list[Path]:
     import matplotlib
 
     said = machine.stated(machine.state() if made is None else made)
-    figure.supxlabel(said, x=0.995, horizontalalignment="right", fontsize=6.5, color=GREY)
+    if figure.legends:  # which is at the place of the label
+        figure.legends[0].set_title(said, prop={"size": 6.5})
+        figure.legends[0].get_title().set_color(GREY)
+    else:
+        figure.supxlabel(said, x=0.995, horizontalalignment="right", fontsize=6.5, color=GREY)
 
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg")]
     with matplotlib.rc_context({"svg.hashsalt": stem.name, "svg.fonttype": "none"}):
