@@ -8,7 +8,7 @@ import pytest
 from tests.docs import pages
 from tests.studies.agreement import made
 from tests.studies.agreement.made import ROW
-from tipoff.files import write_json
+from tipoff.files import read_json, write_json
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.verdicts import JudgedCondition
 from tipoff.workspace import machine
@@ -70,23 +70,27 @@ def test_agreement_in_free_flight_alone_has_no_error_of_contact(tmp_path):
     assert _of_agreement(said).endswith("agrees on 1 of these 1.")
 
 
-def test_figures_are_those_of_the_page_of_results():
-    """Both are written from the same files; one that was written without the other shows here."""
-    results = (pages.ROOT / "docs/results.md").read_text(encoding="utf-8")
-    table = results.split("\n\nCompliant contact at other values")[0]
-    rows = [
-        [cell.strip() for cell in line.strip("|").split("|")]
-        for line in re.findall(r"^\|.*\|$", table, re.MULTILINE)[2:]
-    ]
-    verdicts_of_curves = [verdict for *_, judged_as, verdict in rows if judged_as == "curve"]
-    judged = [said for said in verdicts_of_curves if not said.startswith("reference not")]
-    agree = sum(said.startswith("agrees") for said in judged)
-    assert f"converged on {len(judged)} of {len(rows)} conditions" in TEXT
-    assert f"agrees on {agree} of these {len(judged)}" in TEXT
-    (speed,) = re.findall(r"\*\*Speed\*\* on equal elements: (.*)\.$", TEXT, re.MULTILINE)
-    assert speed in results
-    equal = re.findall(r"\*\*Speed-up\*\* (.*)\.$", TEXT, re.MULTILINE)
-    assert all(said in results for said in equal)
+def test_pages_are_those_of_the_kept_results():
+    """So README, its pages, and the code that writes them are of one state. The results were written by this
+    version or one before, and are read."""
+    written = readme.texts()
+    assert written.keys() >= {pages.ROOT / "README.md", pages.ROOT / "docs/results.md"}
+    for page, text in written.items():
+        assert page.read_text(encoding="utf-8") == text, page
+
+
+def test_a_part_that_was_made_again_replaces_what_is_kept(tmp_path, monkeypatch):
+    """Control: a part that was not made again, and one that is damaged, stay."""
+    monkeypatch.setattr(readme, "KEPT", tmp_path / "kept")
+    first, second = tmp_path / "first", tmp_path / "second"
+    for name in ("agreement", "blind"):
+        write_json(first / "reference" / f"{name}.json", {"made": name})
+    write_json(second / "reference" / "blind.json", {"made": "again"})
+    (second / "reference" / "agreement.json").write_text("{}")
+    for results in (first, second):
+        readme.keep(results)
+    found = {path.stem: read_json(path)["made"] for path in (tmp_path / "kept").rglob("*.json")}
+    assert found == {"agreement": "agreement", "blind": "again"}
 
 
 @pytest.mark.parametrize("name, page", [("results", "results"), ("tails", "tails")])

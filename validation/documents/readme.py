@@ -1,16 +1,22 @@
-"""Writes the figures of README.md, and the tables and pictures of docs/results.md, from the result
-files of ``make full-report``.
+"""Writes the figures of README.md, docs/results.md, docs/tails.md and their pictures from the result files of
+``make full-report``.
 
-    python -m validation.documents.readme [FOLDER]        default out/reference
+    python -m validation.documents.readme [FOLDER]
+
+The result files that these pages show are kept in ``validation/documents/kept``. With the FOLDER of a scene's
+results, such as out/reference, those that it has, and those beside it, replace the kept ones first. So a part can
+be made again alone, and each states its own version, commit, day and machine. Without a FOLDER the pages are
+written again from what is kept, after an edit of their words.
 """
 
 import re
 import shutil
 import sys
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from operator import attrgetter
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from tipoff.files import read_json, write_text
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
@@ -27,6 +33,7 @@ from tipoff.studies.cost import page as cost_page
 from tipoff.studies.cost import stage as cost_study
 from tipoff.studies.cost.results import Cost
 from tipoff.studies.render import chart
+from tipoff.studies.render.chart import Chart, Picture
 from tipoff.studies.render.document import Part, markdown
 from tipoff.studies.render.table import Column, Table, number, percent
 from tipoff.uncertain import STEPS
@@ -35,11 +42,15 @@ from tipoff.workspace.timing import Speedup
 from validation.documents import further, state
 from validation.montecarlo import tails as checked
 from validation.montecarlo import tails_page
+from validation.montecarlo.results import Tails
 
 _ROOT = Path(__file__).resolve().parents[2]
+KEPT = Path(__file__).parent / "kept"
+_SCENE = "reference"
+_RAILS = ("thin", "titanium")
 _TITLE = """# Results on the reference scene
 
-Written by `python -m validation.documents.readme` from the files of `make full-report`. Times
+Written by `python -m validation.documents.readme` from the kept files of `make full-report`. Times
 of different tables may be from different days, so do not divide them by each other. The
 [glossary](glossary.md) has the terms, and [agreement](explanation/convergence_and_chaos.md) the limits.
 
@@ -70,51 +81,78 @@ _ON_PAGE = (
 )
 
 
-def main(folder: Path) -> None:
-    """Replace the figures in README.md, the page of results, and the pictures beside it."""
-    _into_readme("results", read_json(folder / "agreement.json"), headline(folder))
+# Result files that pages show, in the folder of all results.
+_SHOWN = (
+    *(f"{_SCENE}/{name}.json" for name in (*_ON_PAGE, "tails")),
+    *(f"{rail}/{name}.json" for rail in _RAILS for name in ("agreement", "calibration")),
+    *(f"bench/{name}.json" for name in ("highfi", "lowfi")),
+)
+
+
+def main(folder: Path | None = None) -> None:
+    """Replace the pages and the pictures beside them; the results in ``folder`` and beside it are kept first."""
+    if folder is not None:
+        keep(folder.parent)
+        if (picture := folder / "figures" / "figure6.png").is_file():
+            shutil.copyfile(picture, _ROOT / "docs" / picture.name)
+    for path, text in texts().items():
+        write_text(path, text)
+    for shown, made in _pictures(KEPT / _SCENE):
+        with TemporaryDirectory() as drawn:
+            (picture, *_) = chart.to_files(shown, Path(drawn), made)
+            shutil.copyfile(picture, _ROOT / "docs" / picture.name)
+
+
+def keep(results: Path) -> None:
+    """Copy the result files that pages show from the folder of all ``results``; one that it lacks stays as it
+    is."""
+    for name in _SHOWN:
+        if read(results / name) is not None:
+            (KEPT / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(results / name, KEPT / name)
+
+
+def texts() -> dict[Path, str]:
+    """The pages that are written from the kept results, by their paths."""
+    folder = KEPT / _SCENE
+    start = (_ROOT / "README.md").read_text(encoding="utf-8")
+    start = _into_readme(start, "results", read_json(folder / "agreement.json"), headline(folder))
     made_by = state.sentence({name: read(folder / f"{name}.json") for name in _ON_PAGE})
-    page = f"{_TITLE}\n\n{made_by}\n\n{section(folder)}\n\n{further.details(folder)}\n"
-    write_text(_ROOT / "docs" / "results.md", page)
-    if (cost := read(folder / "cost_study.json")) is not None:
-        shown = cost_page.picture(cost_study.STAGE.read(cost))
-        chart.to_files(shown, folder / "figures", cost.get("state") or {})
-    for name in ("figure6.png", "cost.png"):
-        shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
-    if (found := read(folder / "tails.json")) is not None:
-        tails(found, folder)
+    found = {
+        _ROOT / "docs" / "results.md": (
+            f"{_TITLE}\n\n{made_by}\n\n{section(folder)}\n\n{further.details(folder)}\n"
+        )
+    }
+    if (document := read(folder / "tails.json")) is not None:
+        tails = checked.STAGE.read(document)
+        said = [f"{_upper(each)}." for each in tails_page.brief(tails)]
+        lines = "\n  - ".join(["- **Tails**, from [random ejections](docs/tails.md):", *said])
+        start = _into_readme(start, "tails", document, lines)
+        found[_ROOT / "docs" / "tails.md"] = _of_tails(tails, document)
+    return found | {_ROOT / "README.md": start}
 
 
-def tails(document: dict, folder: Path) -> None:
-    """Write the page of random errors checked by the reference, its picture, and its lines in
-    README."""
-    found = checked.STAGE.read(document)
-    _into_readme(
-        "tails",
-        document,
-        "\n  - ".join(
-            [
-                "- **Tails**, from [random ejections](docs/tails.md):",
-                *(_upper(f"{said}.") for said in tails_page.brief(found)),
-            ]
-        ),
-    )
-    text = markdown(tails_page.document(found))
-    head = _TAILS.format(scene=f"`{folder.name}`", **vars(found))
+def _of_tails(found: Tails, document: dict) -> str:
+    """The page of random errors checked by the reference."""
+    head = _TAILS.format(scene=f"`{_SCENE}`", **vars(found))
     made_by = state.sentence({"tails": document})
-    write_text(_ROOT / "docs" / "tails.md", f"{head}\n\n{made_by}\n\n{text}\n")
-    for drawn in tails_page.figures(found):
-        (picture, *_) = chart.to_files(drawn.chart, folder / "figures", document.get("state") or {})
-        shutil.copyfile(picture, _ROOT / "docs" / picture.name)
+    return f"{head}\n\n{made_by}\n\n{markdown(tails_page.document(found))}\n"
 
 
-def _into_readme(name: str, document: dict, text: str) -> None:
-    """Replace the lines of README between the marks of ``name`` by a ``text`` on a result file's
-    ``document``."""
-    path, end = _ROOT / "README.md", f"<!-- end of {name} -->"
-    before, rest = re.split(f"<!-- {name}[,:].*-->", path.read_text(encoding="utf-8"), maxsplit=1)
-    begin = state.mark(name, document)
-    write_text(path, f"{before}{begin}\n{text}\n{end}{rest.split(end)[1]}")
+def _pictures(folder: Path) -> Iterator[tuple[Chart | Picture, dict]]:
+    """Pictures drawn from results in ``folder``, and the state of their numbers."""
+    if (cost := read(folder / "cost_study.json")) is not None:
+        yield cost_page.picture(cost_study.STAGE.read(cost)), cost.get("state") or {}
+    if (document := read(folder / "tails.json")) is not None:
+        for drawn in tails_page.figures(checked.STAGE.read(document)):
+            yield drawn.chart, document.get("state") or {}
+
+
+def _into_readme(text: str, name: str, document: dict, lines: str) -> str:
+    """The ``text`` of README with ``lines`` on a result file's ``document`` between the marks of ``name``."""
+    end = f"<!-- end of {name} -->"
+    before, rest = re.split(f"<!-- {name}[,:].*-->", text, maxsplit=1)
+    return f"{before}{state.mark(name, document)}\n{lines}\n{end}{rest.split(end)[1]}"
 
 
 def headline(folder: Path) -> str:
@@ -180,7 +218,7 @@ def section(folder: Path) -> str:
     ]
     if said := _equal(folder):
         parts.append(f"{_upper(said)} (`make convergence`).")
-    parts += [_rails(found)] if (found := other_rails.beside(folder)) else []
+    parts += [_rails(found)] if (found := list(_other_rails(folder.parent))) else []
     parts += [_blind(blind_study.STAGE.read(blind))] if blind is not None else []
     parts += _ladder(cost_study.STAGE.read(cost)) if cost is not None else []
     return markdown(parts)
@@ -276,6 +314,15 @@ def _equal(folder: Path) -> str:
     return equal.sentence() if equal else ""
 
 
+def _other_rails(results: Path) -> Iterator[other_rails.Scene]:
+    for rail in _RAILS:
+        agreement, own = (
+            read(results / rail / f"{name}.json") for name in ("agreement", "calibration")
+        )
+        if agreement is not None and own is not None:
+            yield other_rails.Scene(rail, compare.STAGE.read(agreement), dict(own["constants"]))
+
+
 def _rails(found: Sequence[other_rails.Scene]) -> Table:
     title = "Other rails, each with its own calibration (`make rails`):"
     return other_rails.table(found, title=title)
@@ -320,4 +367,4 @@ def _ladder(found: Cost) -> list[Part]:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else _ROOT / "out" / "reference")
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else None)

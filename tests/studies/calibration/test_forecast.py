@@ -86,7 +86,11 @@ def test_time_follows_elements_steps_and_speed(tmp_path):
     each, _ = forecast.reference_seconds(asked(of)[0], known)
     assert each == pytest.approx(1e-8 * 19360 * 170_000)
     finer, _ = forecast.reference_seconds(asked(study(tmp_path, element_size=0.001))[0], known)
-    assert finer == pytest.approx(16.0 * each)
+    # a step of 10 ns for each of 19,360 elements; 5 ns of each are its own, eight times as many on half the size
+    assert finer == pytest.approx(2.0 * 170_000 * 19360 * (5e-9 + 8.0 * 5e-9))
+    coarse = known._replace(ns=30.0, element_size=0.004, elements=2420, steps=85_000)
+    fine, _ = forecast.reference_seconds(asked(of)[0], coarse)
+    assert fine == pytest.approx(170_000 * (2420 * 25e-9 + 19360 * 5e-9))  # not 8 * 30 ns
     line = forecast.calibration(of, asked(of))
     assert (
         "5 reference runs to make, 2 at a time: about 1 min 40 s" in line

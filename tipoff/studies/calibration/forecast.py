@@ -3,6 +3,7 @@
     time = ceil(runs / at a time) * elements * steps * ns per element and step
            + evaluations * conditions * time of the surrogate
 
+A step also has a part that does not grow with its elements: what a stored run took beyond ``_ELEMENT_NS`` for each.
 The elements of a built-in section are counted without a mesh. Steps and nanoseconds come from stored runs
 of the reference: of this scene, else of another scene in the same folder, else from a benchmark, else
 from typical values. The line states the source. The estimate neglects the load of other programs, and
@@ -31,6 +32,7 @@ PATIENCE = 1.0  # s
 # per element and step, the 2 mm mesh of the reference scene on one thread of an AMD EPYC
 _TYPICAL_NS = 11.0
 _TYPICAL_RUNS = {SPRINGS: 3e-3, COMPLIANT: 6e-3}  # s, a run of the surrogate on the same processor
+_ELEMENT_NS = 5.0  # of an element alone, on the same processor
 _STEP = 0.7  # dt sqrt(E / rho) / h of meshes of the built-in section
 _COMPILED = " and half a minute to compile, this once"
 _LARGEST = 1e18  # largest plausible number in a file; a larger one is damage
@@ -177,7 +179,9 @@ def reference_seconds(run: Run, speed: Pace) -> tuple[float, str] | None:
         steps = run.scene.expected_end / (
             _STEP * size * math.sqrt(material.density / material.youngs_modulus)
         )
-    return 1e-9 * elements * steps * speed.ns, speed.source
+    element = speed.ns if speed.elements is None else min(speed.ns, _ELEMENT_NS)
+    fixed = (speed.ns - element) * (speed.elements or 0)
+    return 1e-9 * steps * (fixed + element * elements), speed.source
 
 
 def _elements(scene: Scene, size: float, speed: Pace) -> float | None:
