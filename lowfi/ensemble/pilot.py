@@ -18,10 +18,13 @@ All cases have the same equations, and each can be run again alone with this num
 the number with its reason, so an ensemble with a store has one pilot.
 """
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -100,25 +103,31 @@ def _kept(ensemble: Ensemble, path: Path) -> Ensemble | None:
 
 
 def _chosen(ensemble: Ensemble, progress: Callable[[float], None]) -> list[Pilot]:
-    """The pilot cases, without those that the scene refuses."""
-    found: list[Pilot] = []
-    source = ensemble.source
+    """The pilot cases, without those that the scene refuses; as many at a time as there are processors."""
+    source, found = ensemble.source, []
+    last, count = source.asked - 1, min(PILOT, source.asked)
+    numbers = np.linspace(0, last, count).round().astype(int).tolist()
+    rows = [row for number in numbers for row in source.rows(number, number + 1)]
+    progress(0.0)
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        for done, pilot in enumerate(pool.map(partial(_pilot, ensemble), rows), 1):
+            found += [pilot] if pilot else []
+            progress(done / count)
+    return found
+
+
+def _pilot(ensemble: Ensemble, row: Mapping[str, Any]) -> Pilot | None:
+    """One pilot case; None if the scene refuses it."""
     numerics = ensemble.numerics.accurate()
     plain = replace(numerics, modes=0)
-    last, count = source.asked - 1, min(PILOT, source.asked)
-    for done, number in enumerate(np.linspace(0, last, count).round().astype(int).tolist()):
-        progress(done / count)
-        (row,) = source.rows(number, number + 1)
-        try:
-            scene = ensemble.scene.replace(row)
-            if is_chaotic(ensemble, scene, plain):
-                found.append(Pilot(fewest_by_direct_effect(ensemble, scene, plain), True))
-                continue
-            run = solved(scene, ensemble.calibration, numerics, compliance=ensemble.compliance)
-        except SceneError:
-            continue
-        found.append(Pilot(int(run.numerics["modes"]), False))
-    return found
+    try:
+        scene = ensemble.scene.replace(row)
+        if is_chaotic(ensemble, scene, plain):
+            return Pilot(fewest_by_direct_effect(ensemble, scene, plain), True)
+        run = solved(scene, ensemble.calibration, numerics, compliance=ensemble.compliance)
+    except SceneError:
+        return None
+    return Pilot(int(run.numerics["modes"]), False)
 
 
 def is_chaotic(ensemble: Ensemble, scene: Scene, numerics: Numerics) -> bool:
