@@ -81,7 +81,7 @@ def side_view(scene: Any, make: Make = View) -> View:
     low, high = min(scene.rail.start, tail, -arm), max(scene.rail.end, nose)
     reach = max([b, *(abs(place) for corner in _corners(scene) for place in corner)])
     scale = min(
-        (WIDTH - 2 * _EDGE - 60.0) / (high - low), (HEIGHT - 130.0) / (2.0 * reach + 4.0 * wall)
+        (WIDTH - 2 * _EDGE - 60.0) / (high - low), (HEIGHT - 154.0) / (2.0 * reach + 4.0 * wall)
     )
     view = make((0.5 * WIDTH + 20.0, 0.5 * HEIGHT - 8.0), scale, (0.5 * (low + high), 0.0))
     view.box("payload", (tail, -b), (nose, b))
