@@ -9,6 +9,7 @@ be made again alone, and each states its own version, commit, day and machine. W
 written again from what is kept, after an edit of their words.
 """
 
+import json
 import re
 import shutil
 import sys
@@ -107,9 +108,9 @@ def keep(results: Path) -> None:
     """Copy the result files that pages show from the folder of all ``results``; one that it lacks stays as it
     is."""
     for name in _SHOWN:
-        if read(results / name) is not None:
+        if (found := read(results / name)) is not None:
             (KEPT / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(results / name, KEPT / name)
+            write_text(KEPT / name, f"{json.dumps(found, separators=(',', ':'))}\n")
 
 
 def texts() -> dict[Path, str]:
