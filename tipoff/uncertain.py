@@ -83,14 +83,6 @@ def rounded(
     return _fixed(value, min(_decimals(uncertainty), _decimals(least)), sign)
 
 
-def below(value: float, uncertainty: float, least: float = LEAST, sign: str = "") -> str:
-    """``rounded``, but "<0.1" in place of "0.0" for a magnitude above zero."""
-    shown = rounded(value, uncertainty, least, sign)
-    if value <= 0.0 or sign or any(digit in shown for digit in "<123456789"):
-        return shown
-    return f"<{10.0 ** -_decimals(max(uncertainty, least)):g}"
-
-
 def range_of(low: float, high: float, least: float = LEAST) -> str:
     """``low to high``, both rounded to a part of the width of the range, without digits below ``least``; one
     number if they agree."""

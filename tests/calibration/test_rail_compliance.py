@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 
 from tests.highfi.rail.test_own_rail import channels
 from tests.in_memory import memory
@@ -231,8 +232,19 @@ def test_a_long_rail_has_its_uncertainty_when_it_is_first_used(monkeypatch, tmp_
     assert not list(own.glob("*.json"))
     known, expected = made.known(), calibration.compliance(scene, 20e-3)
     np.testing.assert_array_equal(known.uncertainty, expected.uncertainty)
-    assert made.stated() == expected.stated() and known.hash == made.hash == expected.hash
-    assert made.softer.hash == expected.softer.hash != made.hash
+    assert known.hash == made.hash == expected.hash
+    stated, other = made.stated(), expected.stated()
+    assert stated is not None and other is not None
+    # Frequencies of the same matrix differ in their last digits from one solution to the next.
+    assert stated.pop("frequency_uncertainty") == pytest.approx(
+        other.pop("frequency_uncertainty"), rel=1e-9
+    )
+    assert stated == other
+    assert made.softer.hash != made.hash
+    softer = expected.softer.flexibility
+    np.testing.assert_allclose(
+        made.softer.flexibility, softer, rtol=0.0, atol=1e-9 * np.abs(softer).max()
+    )
 
     shutil.copytree(own, tmp_path / "other")
     monkeypatch.setattr(discretisation, "of_scene", None)

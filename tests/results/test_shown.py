@@ -12,7 +12,6 @@ from tests.studies.synthetic import flight
 from tipoff import lowfi
 from tipoff.comparison import metrics
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
-from tipoff.results.model_error import ModelError, Range
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import Calibration, load
 
@@ -33,25 +32,6 @@ def test_one_line(run, tmp_path):
     assert repr(scene) == str(scene) and repr(scene).startswith("Scene('reference', 9.9 kg, 8 pads")
     for shown in (repr(run), repr(scene)):
         assert len(shown) < 160 and "\n" not in shown
-
-
-def test_one_line_of_a_sensitive_run_has_its_ranges(run):
-    near = Range(
-        low_deg_s=(-1.0, 2.0, -8.0),
-        high_deg_s=(1.0, 4.0, 8.0),
-        low_m_s=(6.0, 0.0, 0.0),
-        high_m_s=(6.2, 0.1, 0.1),
-        off_axis_deg=(0.0, 1.0),
-        across_m_s=(0.0, 0.1),
-        runs=9,
-        lost=0,
-    )
-    sensitive = replace(run, error=ModelError(range=near))
-    assert "v_x 6.000 to 6.200 m/s, rates -1.00 to 1.00, 2.00 to 4.00, -8.0 to 8.0 deg/s" in repr(
-        sensitive
-    )
-    single = ", ".join(f"{math.degrees(rate):.3f}" for rate in run.outcome.rate)
-    assert single not in repr(sensitive) and single in repr(run)
 
 
 def test_summary_has_rates_in_degrees_and_by_hand(run):

@@ -11,7 +11,6 @@ from tipoff.mechanics.model_names import SPRINGS
 from tipoff.mechanics.outcome import Outcome
 from tipoff.results import answer, guides, hand_calculation, unfinished
 from tipoff.scenes.scene import parse
-from tipoff.uncertain import range_of
 from tipoff.units import duration, is_number
 
 if TYPE_CHECKING:
@@ -27,13 +26,11 @@ def line(run: "Trajectory") -> str:
     )
     at = instant.of_outcome(run.outcome)
     velocity, rate = instant.velocity(run.outcome, at), instant.rate(run.outcome, at)
-    found = ""
-    if rate is not None and velocity is not None:
-        rates = answer.words(velocity, list(map(math.degrees, rate)), run.error)["rate"]
-        speed = f"{velocity[0]:.5g}"
-        if run.error is not None and (near := run.error.range) is not None:
-            speed = range_of(near.low_m_s[0], near.high_m_s[0], least=1e-4)
-        found = f": v_x {speed} m/s, rates {rates}{_where(at)}"
+    found = (
+        f": v_x {velocity[0]:.5g} m/s, rates {_rates(rate)} deg/s{_where(at)}"
+        if rate is not None and velocity is not None
+        else ""
+    )
     return f"Trajectory({run.model}, {run.status}, {end}{found})"
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from tipoff.uncertain import LEAST, NOTHING, STEPS, Measured, below, number
+from tipoff.uncertain import LEAST, NOTHING, STEPS, Measured, number, rounded
 from tipoff.uncertain import uncertain as with_uncertainty
 
 
@@ -68,7 +68,7 @@ class Column:
         if error is None or not least:
             return number(value, self.form, least)
         if cell.apart:
-            return below(value, error, least, "+" if self.form.startswith("+") else "")
+            return rounded(value, error, least, "+" if self.form.startswith("+") else "")
         return with_uncertainty(value, error, least)
 
 
