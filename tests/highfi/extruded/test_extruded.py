@@ -14,6 +14,7 @@ from tipoff.highfi.extruded.vectors import Part
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.statics import assembly
 from tipoff.highfi.statics.operator import internal_force
+from tipoff.kernels.cached import KernelCache
 from tipoff.kernels.memory import zeros
 from tipoff.meshes import l_rail
 
@@ -108,12 +109,16 @@ def test_the_force_does_not_depend_on_the_width_of_the_registers(monkeypatch):
     meshes = [
         read(l_rail.build(l_rail.LRailGeometry(fillet=0.002), size)) for size in (0.004, 0.008)
     ]
-    forces = []
+    forces, used = [], []
+    monkeypatch.setattr(KernelCache, "load_overload", lambda *_: None)
+    monkeypatch.setattr(KernelCache, "save_overload", lambda *_: None)
     for own in (Part(8, 2), Part(4, 1), Part(4, 2)):
-        monkeypatch.setattr(kernel, "fitting_part", lambda codegen, own=own: own)
-        # a dispatcher of its own, which has no code from the cache
-        compiled = type(column_force)(column_force.py_func, targetoptions={"nopython": True})
+        monkeypatch.setattr(
+            kernel, "fitting_part", lambda codegen, own=own: used.append(own) or own
+        )
+        compiled = type(column_force)(column_force.py_func)  # is compiled again
         forces.append(np.concatenate([both_forces(mesh, compiled)[0] for mesh in meshes], axis=1))
+    assert set(used) == {Part(8, 2), Part(4, 1), Part(4, 2)}
     assert (forces[1] == forces[0]).all() and (forces[2] == forces[0]).all()
 
 
