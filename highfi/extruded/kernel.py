@@ -67,9 +67,8 @@ class _Sweep:
         self.held = [
             [self.narrow.variable() for _ in range(part.vectors)] for _ in range(3 * layout.blocks)
         ]
-        self.kept = [
-            self.code.numbers(LANES) for _ in range(3 * layout.blocks)
-        ]  # sums of 16 layers
+        # sums of 16 layers, on the stack
+        self.kept = [self.code.numbers(LANES) for _ in range(3 * layout.blocks)]
         self.below, self.pending, self.turning = (
             [self.code.variable() for _ in range(3)] for _ in range(3)
         )
