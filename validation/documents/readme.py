@@ -164,7 +164,7 @@ def headline(folder: Path) -> str:
     lines = [_agreed(agreement.compliant), f"- **Speed** on equal elements: {faster}."]
     if said := _equal(folder):
         said = said.split(". ")[0].removeprefix("speed-up ")
-        lines.append(f"- **Speed-up** {re.sub(r' [(].*? over repeats[)]', '', said)}.")
+        lines.append(f"- **Speed** {re.sub(r' [(].*? over repeats[)]', '', said)}.")
     return "\n".join(lines)
 
 
