@@ -161,11 +161,11 @@ def headline(folder: Path) -> str:
     at equal accuracy if the error of the reference was studied."""
     agreement = _compared(folder)
     faster = _faster(agreement.speedup_compliant)
-    lines = [_agreed(agreement.compliant), f"- **Speed** on equal elements: {faster}."]
+    fast = f"- **Speed** on equal elements: {faster}."
     if said := _equal(folder):
         said = said.split(". ")[0].removeprefix("speed-up ")
-        lines.append(f"- **Speed** {re.sub(r' [(].*? over repeats[)]', '', said)}.")
-    return "\n".join(lines)
+        fast += f" {_upper(re.sub(r' [(].*? over repeats[)]', '', said))}."
+    return f"{_agreed(agreement.compliant)}\n{fast}"
 
 
 def _compared(folder: Path) -> Agreement:
