@@ -24,7 +24,7 @@ def starred(shown: str, measured_here: bool) -> str:
 
 def _to_floor(name: str) -> Callable[[JudgedCondition], Measured]:
     """A cell with an error, rounded to the floor."""
-    return lambda row: Measured(getattr(row, name), row.floor_deg_s, magnitude=True)
+    return lambda row: Measured(getattr(row, name), row.floor_deg_s, apart=True)
 
 
 def _rounded(uncertainty: float | None) -> str:
