@@ -65,6 +65,17 @@ def test_conditions_are_counted_by_their_verdict(tmp_path):
     assert "at most 0.4 %" in said and "at most 0.03 deg/s" in said
 
 
+def test_the_speed_at_equal_accuracy_is_a_bound_unless_a_mesh_is_surer():
+    said = made.EQUAL.short()
+    assert "on phi35 the ratio is 183: 250 s with elements of 1 mm against 5 ms" in said
+    assert "is at least 183: " in replace(made.EQUAL, surer=False).short()
+
+
+def test_the_page_of_results_has_the_speed_at_equal_accuracy_once():
+    text = (pages.ROOT / "docs/results.md").read_text(encoding="utf-8")
+    assert text.lower().count("speed-up at equal accuracy") == 1 == TEXT.count("At equal accuracy")
+
+
 def test_agreement_in_free_flight_alone_has_no_error_of_contact(tmp_path):
     said = _written(tmp_path, [_row(verdicts.AGREES, 1e-8, 1e-8, touches=False)])
     assert _of_agreement(said).endswith("agrees on 1 of these 1.")

@@ -1,6 +1,7 @@
 """Tables of docs/results.md: balances, chaotic conditions, time at equal accuracy, error of the reference, speeds."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from operator import attrgetter
 from pathlib import Path
 
@@ -128,7 +129,8 @@ def _convergence(found: Convergence, slides: list[str]) -> list[Part]:
     columns = [Column(head, form=".5g") for head in heads]
     return [
         f"Error of the reference itself (`make convergence`, {found.condition}):",
-        Bullets([*page.sentences(found), *slides]),
+        # The speed at equal accuracy stands beside the other speeds.
+        Bullets([*page.sentences(replace(found, equal_accuracy=None)), *slides]),
         Table(["quantity", *columns, "order", f"± at {heads[-1]}", "method"], rows),
         _changes(found),
     ]

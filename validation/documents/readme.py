@@ -23,6 +23,7 @@ from tipoff.files import read_json, write_text
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.studies.agreement import growth_page, other_rails, verdicts
 from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
 from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.agreement.page import by_factor
 from tipoff.studies.agreement.stage import Agreement
@@ -162,9 +163,8 @@ def headline(folder: Path) -> str:
     agreement = _compared(folder)
     faster = _faster(agreement.speedup_compliant)
     fast = f"- **Speed** on equal elements: {faster}."
-    if said := _equal(folder):
-        said = said.split(". ")[0].removeprefix("speed-up ")
-        fast += f" {_upper(re.sub(r' [(].*? over repeats[)]', '', said))}."
+    if (equal := _equal(folder)) is not None:
+        fast += f" {equal.short()}."
     return f"{_agreed(agreement.compliant)}\n{fast}"
 
 
@@ -217,8 +217,8 @@ def section(folder: Path) -> str:
         *_growth(agreement.growth),
         _speed(agreement),
     ]
-    if said := _equal(folder):
-        parts.append(f"{_upper(said)} (`make convergence`).")
+    if (equal := _equal(folder)) is not None:
+        parts.append(f"{_upper(equal.sentence())} (`make convergence`).")
     parts += [_rails(found)] if (found := list(_other_rails(folder.parent))) else []
     parts += [_blind(blind_study.STAGE.read(blind))] if blind is not None else []
     parts += _ladder(cost_study.STAGE.read(cost)) if cost is not None else []
@@ -307,12 +307,11 @@ def _faster(found: Speedup) -> str:
     )
 
 
-def _equal(folder: Path) -> str:
-    """The speed-up on the mesh whose uncertainty is as small as the error of the surrogate; empty
-    if not measured."""
+def _equal(folder: Path) -> EqualAccuracy | None:
+    """The speed-up on the mesh whose uncertainty is as small as the error of the surrogate; None if not
+    measured."""
     found = read(folder / "convergence.json")
-    equal = None if found is None else convergence.STAGE.read(found).equal_accuracy
-    return equal.sentence() if equal else ""
+    return None if found is None else convergence.STAGE.read(found).equal_accuracy
 
 
 def _other_rails(results: Path) -> Iterator[other_rails.Scene]:

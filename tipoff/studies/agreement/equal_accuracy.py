@@ -27,6 +27,14 @@ class EqualAccuracy(Speedup):
     mesh_uncertainty_deg_s: float
     surer: bool
 
+    def short(self) -> str:
+        """The ratio with both times, without a full stop."""
+        return (
+            f"At equal accuracy on {self.condition} the ratio is {'' if self.surer else 'at least '}"
+            f"{self.ratio:,.0f}: {self.highfi_wall_s:.3g} s with elements of "
+            f"{1e3 * self.element_size_m:g} mm against {1e3 * self.lowfi_wall_s:.3g} ms"
+        )
+
     def sentence(self) -> str:
         """The speed-up at equal accuracy, without a full stop."""
         size = f"{1e3 * self.element_size_m:g} mm"
