@@ -9,12 +9,12 @@ import pytest
 
 from tests.docs import pages
 from tipoff.faults import SceneError
+from tipoff.workspace import machine
 from validation.flights import compare, launchers, page, record
 from validation.flights.launchers import GRAVITY, LAUNCHERS, PSAS
 
-KEPT = json.loads((pages.ROOT / "tests/measurements/flights.json").read_text(encoding="utf-8"))[
-    "flights"
-]
+STORED = json.loads((pages.ROOT / "tests/measurements/flights.json").read_text(encoding="utf-8"))
+KEPT = STORED["flights"]
 FORCE, BIAS, EXIT_RATE = 95.0, (0.5, -0.3, 0.2), (9.0, 1.5, -0.5)  # m/s2, deg/s, deg/s
 INTERVAL = 1.0 / 819.2  # s
 
@@ -90,6 +90,7 @@ def test_scenes_have_the_published_places(launcher, tmp_path):
 def test_the_page_has_every_comparison(kept):
     text = (pages.ROOT / "docs/measured_launches.md").read_text(encoding="utf-8")
     assert page.table(kept) in text
+    assert f"{machine.stated(STORED['state'])};" in text
 
 
 @pytest.mark.parametrize("kept", KEPT, ids=lambda kept: kept["flight"])
