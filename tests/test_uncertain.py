@@ -2,7 +2,8 @@
 
 import pytest
 
-from tipoff.uncertain import number, uncertain
+from tipoff.studies.render.column import Column
+from tipoff.uncertain import Measured, below, number, uncertain
 
 
 @pytest.mark.parametrize(
@@ -25,6 +26,26 @@ from tipoff.uncertain import number, uncertain
 )
 def test_rounding(value, uncertainty, shown):
     assert uncertain(value, uncertainty) == shown
+
+
+@pytest.mark.parametrize(
+    "value, uncertainty, shown",
+    [
+        (0.013, 0.21, "<0.1"),
+        (0.04, 3.2, "<1"),
+        (0.6, 3.2, "1"),
+        (4.0, 29.0, "<10"),
+        (0.0, 0.21, "0.0"),
+        (1e-5, 1e-6, "<0.001"),
+    ],
+)
+def test_an_error_below_its_uncertainty_is_not_zero(value, uncertainty, shown):
+    assert below(value, uncertainty) == shown
+    assert Column("error", "deg/s").measured(Measured(value, uncertainty, magnitude=True)) == shown
+
+
+def test_a_signed_value_below_its_uncertainty_is_zero():
+    assert Column("mean", "deg/s").measured(Measured(0.013, 0.21, apart=True)) == "0.0"
 
 
 def test_another_least_step():

@@ -32,6 +32,7 @@ class Measured:
     uncertainty: float | None
     apart: bool = False
     unit: str = ""  # if its column has none
+    magnitude: bool = False  # the size of an error, which is not shown as zero
 
 
 def number(value: float | None, form: str = ".3g", least: float = 0.0) -> str:
@@ -81,6 +82,14 @@ def rounded(
             return f"<{least:g}"
         return _fixed(value, _decimals(least), sign)
     return _fixed(value, min(_decimals(uncertainty), _decimals(least)), sign)
+
+
+def below(value: float, uncertainty: float, least: float = LEAST) -> str:
+    """``rounded``, but "<0.1" in place of "0.0" for a magnitude above zero."""
+    shown = rounded(value, uncertainty, least)
+    if value <= 0.0 or any(digit in shown for digit in "<123456789"):
+        return shown
+    return f"<{10.0 ** -_decimals(max(uncertainty, least)):g}"
 
 
 def range_of(low: float, high: float, least: float = LEAST) -> str:

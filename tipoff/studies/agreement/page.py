@@ -22,9 +22,9 @@ def starred(shown: str, measured_here: bool) -> str:
     return shown if measured_here else f"{shown}*"
 
 
-def _to_floor(name: str) -> Callable[[JudgedCondition], Measured]:
+def _to_floor(name: str, **shown_as: bool) -> Callable[[JudgedCondition], Measured]:
     """A cell with an error, rounded to the floor."""
-    return lambda row: Measured(getattr(row, name), row.floor_deg_s, apart=True)
+    return lambda row: Measured(getattr(row, name), row.floor_deg_s, **shown_as)
 
 
 def _rounded(uncertainty: float | None) -> str:
@@ -46,10 +46,10 @@ _COLUMNS: tuple[Any, ...] = (
         lambda row: starred(percent(row.floor_l2, ".2g"), row.floor_measured_here),
     ),
     (_percent("v_x L2"), attrgetter("velocity_relative_l2")),
-    (Column("settled error", "deg/s"), _to_floor("settled_rate_error_deg_s")),
+    (Column("settled error", "deg/s"), _to_floor("settled_rate_error_deg_s", magnitude=True)),
     (
         Column("error x, y, z", "deg/s", "+.2g", detail=True),
-        _to_floor("settled_rate_error_xyz_deg_s"),
+        _to_floor("settled_rate_error_xyz_deg_s", apart=True),
     ),
     (
         Column("floor", "deg/s", detail=True),

@@ -3,10 +3,10 @@
 import re
 import typing
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from tipoff.uncertain import LEAST, NOTHING, STEPS, Measured, number, rounded
+from tipoff.uncertain import LEAST, NOTHING, STEPS, Measured, below, number, rounded
 from tipoff.uncertain import uncertain as with_uncertainty
 
 
@@ -58,7 +58,7 @@ class Column:
     def measured(self, cell: Measured) -> str:
         """A number, or several, rounded to their uncertainty."""
         if isinstance(cell.value, (list, tuple)):
-            parts = (Measured(part, cell.uncertainty, cell.apart) for part in cell.value)
+            parts = (replace(cell, value=part) for part in cell.value)
             return ", ".join(map(self.measured, parts))
         if cell.value is None:
             return NOTHING
@@ -67,6 +67,8 @@ class Column:
         least = self.least or STEPS.get(cell.unit) or LEAST * (error or 0.0)
         if error is None or not least:
             return number(value, self.form, least)
+        if cell.magnitude:
+            return below(value, error, least)
         if cell.apart:
             return rounded(value, error, least, "+" if self.form.startswith("+") else "")
         return with_uncertainty(value, error, least)

@@ -267,7 +267,8 @@ def _conditions(
                 *(_at_exit(row, own) if _burns_on(rows) else []),
                 *([_hand(row)] if _by_hand(rows) else []),
                 settled and _off_axis(row, own),
-                other and Measured(other.settled_rate_error_deg_s, other.floor_deg_s, apart=True),
+                other
+                and Measured(other.settled_rate_error_deg_s, other.floor_deg_s, magnitude=True),
                 *([_words(above(row, page.limits, at, limited))] if page.limits else []),
                 other.verdict if other else row.status,
             ]
