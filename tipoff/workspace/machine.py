@@ -10,6 +10,8 @@ from pathlib import Path
 from tipoff import sources
 
 _ROOT = Path(__file__).resolve().parents[2]
+# Changes of these files change no number: documents, and results that are kept.
+_NO_CODE = (":!docs", ":!*.md", ":!*/kept/*")
 
 
 def describe() -> dict:
@@ -25,8 +27,8 @@ def describe() -> dict:
 
 def state() -> dict:
     """What makes a result now: ``version`` and ``commit`` of tipoff, ``date`` (UTC), ``processor`` and
-    ``cores``. The commit ends with ``+`` if files of the clone differ from it, and is None outside a
-    clone."""
+    ``cores``. The commit ends with ``+`` if files of the clone other than documents and kept results
+    differ from it, and is None outside a clone."""
     here = describe()
     return {
         "version": sources.version("tipoff"),
@@ -53,7 +55,10 @@ def _commit() -> str | None:
     try:
         head, changed = (
             subprocess.run(["git", "-C", _ROOT, *asked], capture_output=True, text=True, check=True)
-            for asked in (("rev-parse", "--short=12", "HEAD"), ("status", "--porcelain", "-uno"))
+            for asked in (
+                ("rev-parse", "--short=12", "HEAD"),
+                ("status", "--porcelain", "-uno", "--", ".", *_NO_CODE),
+            )
         )
     except (OSError, subprocess.CalledProcessError):
         return None
