@@ -22,9 +22,11 @@ def starred(shown: str, measured_here: bool) -> str:
     return shown if measured_here else f"{shown}*"
 
 
-def _to_floor(name: str, **shown_as: bool) -> Callable[[JudgedCondition], Measured]:
-    """A cell with an error, rounded to the floor."""
-    return lambda row: Measured(getattr(row, name), row.floor_deg_s, **shown_as)
+def _to_floor(name: str, signed: bool = False) -> Callable[[JudgedCondition], Measured]:
+    """A cell with an error, rounded to the floor; its size, unless it is ``signed``."""
+    return lambda row: Measured(
+        getattr(row, name), row.floor_deg_s, apart=signed, magnitude=not signed
+    )
 
 
 def _rounded(uncertainty: float | None) -> str:
@@ -46,10 +48,10 @@ _COLUMNS: tuple[Any, ...] = (
         lambda row: starred(percent(row.floor_l2, ".2g"), row.floor_measured_here),
     ),
     (_percent("v_x L2"), attrgetter("velocity_relative_l2")),
-    (Column("settled error", "deg/s"), _to_floor("settled_rate_error_deg_s", magnitude=True)),
+    (Column("settled error", "deg/s"), _to_floor("settled_rate_error_deg_s")),
     (
         Column("error x, y, z", "deg/s", "+.2g", detail=True),
-        _to_floor("settled_rate_error_xyz_deg_s", apart=True),
+        _to_floor("settled_rate_error_xyz_deg_s", signed=True),
     ),
     (
         Column("floor", "deg/s", detail=True),
