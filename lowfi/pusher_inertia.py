@@ -106,6 +106,6 @@ def accelerations(record, state, first, body, out):
 @kernel
 def of_platform(platform, state, base, out):
     moving = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    if platform is not None:
+    if platform.free:
         moving = accelerations(platform, state, slot.PLATFORM, base, out)
     return moving

@@ -149,7 +149,7 @@ def _rate(record, h):
 @kernel
 def frame(platform, state):
     """Motion of the frame that carries the rails: the platform, or the scene axes at rest."""
-    if platform is not None:
+    if platform.free:
         return motion(platform, state, PLATFORM)
     zero = (0.0, 0.0, 0.0)
     return Motion(zero, zero, (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), zero, zero)

@@ -57,6 +57,11 @@ class Body(NamedTuple):
     mass: float  # kg
     inertia: np.ndarray  # (3, 3) kg m2, about the mass centre, in body axes
     inverse_inertia: np.ndarray  # (3, 3) 1/(kg m2)
+    free: bool  # the platform of fixed rails is not
+
+
+# The platform of fixed rails: it does not move, whatever acts on it.
+_FIXED = Body(np.inf, np.zeros((3, 3)), np.zeros((3, 3)), free=False)
 
 
 @by_reference
@@ -71,12 +76,12 @@ class Contact(NamedTuple):
 
 @by_reference
 class System(NamedTuple):
-    """All records of one run. The kernels skip an absent effect by its record: no pusher, no
-    friction, no offset. None is a type of its own, for which kernels are compiled: fixed rails, the
+    """All records of one run. The kernels skip an absent effect by its record: no free platform, no
+    pusher, no friction, no offset. None is a type of its own, for which kernels are compiled: the
     kind of contact that is not there, and springs at straight walls."""
 
     payload: Body
-    platform: Body | None  # None for fixed rails
+    platform: Body
     faces: np.ndarray  # (f, faces.FACE_SIZE)
     rail_start: float  # m, X of the rear end
     rail_end: float  # m, X of the open end
@@ -113,7 +118,7 @@ def build(
         )
     return System(
         payload=_body(model.payload),
-        platform=_body(model.platform) if model.platform is not None else None,
+        platform=_body(model.platform) if model.platform is not None else _FIXED,
         faces=faces.table(model, compliance),
         rail_start=float(model.rail_start),
         rail_end=float(model.rail_end),
@@ -138,4 +143,5 @@ def _body(record) -> Body:
         record.mass,
         np.ascontiguousarray(record.inertia),
         np.ascontiguousarray(record.inverse_inertia),
+        free=True,
     )

@@ -111,7 +111,7 @@ def _fill(frame, constants, state, book, share):
     ``share`` of a step back."""
     _fill_body(state.payload, constants.payload.inverse_inertia, book[NOW:], book[BEFORE:], share)
     base = NOW + BODY
-    if frame is not None:
+    if frame.free:
         _fill_body(state.platform, frame.inverse_inertia, book[base:], book[BEFORE + BODY :], share)
         _count_from_origin(triple(frame.centre), book[base:])
     else:

@@ -37,7 +37,7 @@ def _take(guide, frame, state, time):
 
 @kernel
 def _turn(frame, state):
-    if frame is not None:
+    if frame.free:
         return rotation.matrix(_four(state.platform.quaternion))
     return (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 

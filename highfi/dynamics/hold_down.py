@@ -34,7 +34,7 @@ def _arm(latch, frame, state, pose):
 
 @kernel
 def _on_platform(frame, state, out):
-    if frame is not None:
+    if frame.free:
         p, b = state.payload.position, state.platform.position
         return (out[0] + p[0] - b[0], out[1] + p[1] - b[1], out[2] + p[2] - b[2])
     return out

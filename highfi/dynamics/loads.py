@@ -98,7 +98,7 @@ def add_work(constants, state, active, pose, thrust, ahead):
 def _axial_speed(frame, state, base):
     """X velocity (m/s) of the payload's mass centre relative to that of platform and rails."""
     speed = state.payload.velocity[0]
-    if frame is not None:
+    if frame.free:
         speed -= axial_velocity_of_platform(state, frame, base)
     return speed
 
@@ -106,7 +106,7 @@ def _axial_speed(frame, state, base):
 @inlined
 def _platform_work(frame, constants, state, base, thrust, contact):
     """``contact`` (N): normal force and friction on the payload along X."""
-    if frame is not None:
+    if frame.free:
         half, total, axial = 0.5 * constants.dt, state.work[TOTAL], state.work[AXIAL]
         velocity = axial_velocity_of_platform(state, frame, base)
         axial.contact_axial -= half * contact[0] * velocity
@@ -140,7 +140,7 @@ def _body_force_work(body_force, constants, state, base):
 
 @inlined
 def _body_force_work_on_platform(frame, half, g, state, base):
-    if frame is not None:
+    if frame.free:
         state.work[TOTAL].body_force += half * frame.mass * rotation.dot(g, state.platform.velocity)
         state.work[AXIAL].body_force += (
             half * frame.total_mass * g[0] * axial_velocity_of_platform(state, frame, base)
@@ -156,13 +156,11 @@ def add_external_impulse(frame, constants, state, pose, thrust, reaction, dt):
     and moment, counts if the platform is fixed.
     """
     force, _, point = thrust
-    if frame is None:
-        ground, ground_moment = reaction
+    if not (frame.free and constants.drive.reacts_on_platform):
         _add(state.impulse, force, rotation.cross(point, force), dt)
+    if not frame.free:
+        ground, ground_moment = reaction
         _add(state.impulse, ground, ground_moment, -dt)
-    if frame is not None:
-        if not constants.drive.reacts_on_platform:
-            _add(state.impulse, force, rotation.cross(point, force), dt)
     if pulls(constants.body_force):
         _add_body_force(triple(constants.body_force), constants, state, pose, dt)
 
@@ -187,7 +185,7 @@ def _centre_of_rails(frame, drive, state, pose):
 
 @kernel
 def _add_platform_weight(frame, state, g, dt):
-    if frame is not None:
+    if frame.free:
         _add_weight(state.impulse, g, frame.mass, triple(state.platform.position), dt)
 
 

@@ -134,7 +134,7 @@ def _arm(pushers, i, frame, state, pose):
     arm = rotation.rotate(pose.turn, law.point_of(pushers, i))
     out = rotation.rotate(pose.frame, arm)
     base = out
-    if frame is not None:
+    if frame.free:
         p, b = state.payload.position, state.platform.position
         base = (out[0] + p[0] - b[0], out[1] + p[1] - b[1], out[2] + p[2] - b[2])
     return Arm(rotation.rotate(pose.frame, law.direction_of(pushers, i)), out, base)
@@ -156,7 +156,7 @@ def _speed(pushers, i, frame, state, pose):
 @kernel
 def _speed_of_platform(frame, state, arm):
     speed = 0.0
-    if frame is not None:
+    if frame.free:
         rate = body_rate(state.platform, frame.inverse_inertia)
         velocity = triple(state.platform.velocity)
         speed = _along(arm.direction, arm.on_platform, velocity, rate)
@@ -239,7 +239,7 @@ def mobility(constants, state, one, other):
 @kernel
 def _mobility_of_platform(frame, state, one, other):
     total = 0.0
-    if frame is not None:
+    if frame.free:
         turn = rotation.cross(other.on_platform, other.direction)
         turned = rotation.angular_velocity(body_matrix(state.platform), frame.inverse_inertia, turn)
         total = rotation.dot(one.direction, other.direction) / frame.mass
@@ -261,12 +261,12 @@ def kick_pair(constants, state, arm, size):
 
 @kernel
 def _kick_back(frame, state, arm, push):
-    if frame is not None:
+    if frame.free:
         turn = rotation.cross(arm.on_platform, push)
         for i in range(3):
             state.platform.velocity[i] -= push[i] / frame.mass
             state.platform.spin[i] -= turn[i]
-    if frame is None:
+    else:
         p, out = state.payload.position, arm.on_payload
         point = (p[0] + out[0], p[1] + out[1], p[2] + out[2])
         turn = rotation.cross(point, push)

@@ -168,7 +168,7 @@ def _kick_payload(constants, state, pose, thrust, dt):
 def _kick_platform(frame, constants, state, pose, rails, thrust, dt):
     """``rails``: force (N) and moment about the frame's origin (N m) of the rails on the frame, in
     inertial axes."""
-    if frame is not None:
+    if frame.free:
         body, (force, couple) = state.platform, rails
         offset = rotation.rotate(pose.frame, triple(frame.centre))
         couple = less(couple, rotation.cross(offset, force))
@@ -198,7 +198,7 @@ def drift_bodies(constants, state, pose):
 
 @kernel
 def _drift_frame(frame, drive, state, pose, dt):
-    if frame is not None:
+    if frame.free:
         state.evaluated[PLATFORM] += 1
         motion = state.motion
         velocity = rotation.unrotate(pose.frame, triple(state.platform.velocity))

@@ -94,7 +94,7 @@ class Stepper:
             surface=s.surface,
             faces=s.faces,
             payload=m.payload,
-            frame=s.frame,
+            frame=s.frame or records.FIXED,
             drive=s.drive,
             thrust=complete(m.thrust),
             pushers=s.pushers,

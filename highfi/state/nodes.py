@@ -45,11 +45,11 @@ def move_nodes(rail, frame, state, dt, first, last):
     ``pose``."""
     # Unsigned, because signed indices would prevent vectorisation of the loops.
     first, last = np.uint64(first), np.uint64(last)
-    if frame is None:
+    if frame.free:
+        _move_in_frame(rail, state, triple(frame.centre), dt, first, last)
+    else:
         for i in range(3):
             _move_component(rail, state, i, dt, first, last)
-    if frame is not None:
-        _move_in_frame(rail, state, triple(frame.centre), dt, first, last)
 
 
 @kernel
@@ -135,7 +135,7 @@ def hold(rail, resistance, first, last, total):
 def follow_frame(rail, state, frame, nodes, first, last):
     """Set the velocity of clamped ``nodes`` from number ``first`` to ``last`` to the frame's
     inertial velocity, which friction needs."""
-    if frame is not None:
+    if frame.free:
         velocity, rate = triple(state.motion.velocity), triple(state.motion.rate)
         for k in range(first, last):
             node = nodes[k]

@@ -69,7 +69,7 @@ def _identity():
 def frame_matrix(platform_state, frame):
     """Rotation of the frame; the identity, without computation, if the platform is fixed."""
     turn = _identity()
-    if frame is not None:
+    if frame.free:
         turn = body_matrix(platform_state)
     return turn
 
@@ -79,7 +79,7 @@ def _from_origin(separation, frame):
     """Convert a place in frame axes from the mass centre of the rigid part to the frame's
     origin."""
     place = separation
-    if frame is not None:
+    if frame.free:
         c = frame.centre
         place = (separation[0] + c[0], separation[1] + c[1], separation[2] + c[2])
     return place
@@ -89,7 +89,7 @@ def _from_origin(separation, frame):
 def origin_of_frame(frame, platform, base):
     """Place (m) of the frame's origin in inertial axes; ``base``: rotation of the frame."""
     place = triple(platform.position)
-    if frame is not None:
+    if frame.free:
         place = less(place, rotation.rotate(base, triple(frame.centre)))
     return place
 

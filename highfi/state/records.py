@@ -145,12 +145,17 @@ class Surface(NamedTuple):
 
 @by_reference
 class Frame(NamedTuple):
-    """Rigid part of the free platform."""
+    """Rigid part of the platform."""
 
     mass: float  # kg
     inverse_inertia: np.ndarray  # (3,3) 1/(kg m2), about its mass centre
     total_mass: float  # kg, with the rails
     centre: np.ndarray  # (3,) m, its mass centre from the frame's origin
+    free: bool = True
+
+
+# Of a fixed platform: it does not move, whatever acts on it.
+FIXED = Frame(np.inf, np.zeros((3, 3)), np.inf, np.zeros(3), free=False)
 
 
 @by_reference
@@ -179,7 +184,7 @@ class Constants(NamedTuple):
     surface: Surface
     faces: Faces
     payload: Payload
-    frame: Frame | None  # None: fixed platform
+    frame: Frame  # FIXED: of a fixed platform
     drive: Drive
     thrust: Thrust  # over time
     pushers: Pushers  # thrust over travel, in frame axes from the frame's origin

@@ -37,7 +37,7 @@ class Load(NamedTuple):
 @kernel
 def relative_pose(platform, body, base):
     """Place (m) and rotation (nine numbers) of the payload in platform axes."""
-    if platform is not None:
+    if platform.free:
         d = (
             body.place[0] - base.place[0],
             body.place[1] - base.place[1],
@@ -69,7 +69,7 @@ def relative_motion(platform, body, base, place, turn):
     axes."""
     spin = rotation.unrotate(base.turn, body.rate)
     drift = rotation.unrotate(base.turn, body.velocity)
-    if platform is not None:
+    if platform.free:
         drift, spin = _seen_from_platform(body, base, place, spin)
     swing = (
         spin[1] * turn[6] - spin[2] * turn[3],
@@ -214,7 +214,7 @@ def pad_point(face, body):
 def relative_velocity(platform, body, base, point):
     """Velocity (m/s) of the payload's point against the platform's point at the same place."""
     u = velocity_at(body, point)
-    if platform is not None:
+    if platform.free:
         w = velocity_at(base, point)
         return (u[0] - w[0], u[1] - w[1], u[2] - w[2])
     return u

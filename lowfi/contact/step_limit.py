@@ -143,7 +143,7 @@ def _tangent(n):
 def inverse_mass(platform, payload, body, base, point, direction):
     """Inverse mass (1/kg) of a pair of forces along ``direction`` at ``point``."""
     total = _own(payload.mass, payload.inverse_inertia, body, point, direction)
-    if platform is not None:
+    if platform.free:
         total += _own(platform.mass, platform.inverse_inertia, base, point, direction)
     return total
 
@@ -167,7 +167,7 @@ def mobility(platform, payload, body, base, one, other):
     """Change (1/kg) of the relative velocity along and at ``one`` by a unit impulse of a pair along
     and at the ``other``, each a direction and a point."""
     total = _shared(payload, body, one, other)
-    if platform is not None:
+    if platform.free:
         total += _shared(platform, base, one, other)
     return total
 

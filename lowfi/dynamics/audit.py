@@ -116,7 +116,7 @@ def _kinetic(mass, state, first, body):
 @kernel
 def _kinetic_of_platform(platform, state, base):
     kinetic, axial = 0.0, 0.0
-    if platform is not None:
+    if platform.free:
         kinetic, axial = _kinetic(platform.mass, state, PLATFORM, base)
     return kinetic, axial
 

@@ -74,7 +74,7 @@ def coefficients(friction: Friction | Sticking | None) -> tuple[float, float]:
 def system_of(common, cases, n):
     """The ``common`` system with the inputs of case ``n``."""
     return System(
-        payload=Body(cases.mass[n], cases.inertia[n], cases.inverse_inertia[n]),
+        payload=Body(cases.mass[n], cases.inertia[n], cases.inverse_inertia[n], free=True),
         platform=common.platform,
         faces=cases.faces[n],
         rail_start=common.rail_start,

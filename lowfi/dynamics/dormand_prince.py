@@ -92,7 +92,7 @@ def _restore(system, apart, dt, state):
 
 @kernel
 def _reconcile_platform(platform, apart, dt, state):
-    if platform is not None:
+    if platform.free:
         reconcile(platform, apart, dt, state, PLATFORM)
 
 

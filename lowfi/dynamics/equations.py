@@ -100,7 +100,7 @@ def move(mass, apart, state, first, body, out):
 @kernel
 def move_platform(platform, apart, state, bodies, out):
     """``move`` of the platform, if it is free."""
-    if platform is not None:
+    if platform.free:
         bodies.evaluated[effects.PLATFORM] += 1
         move(platform.mass, apart, state, PLATFORM, bodies.base, out)
 
@@ -166,16 +166,9 @@ def _offset_line(offset, size, body):
 
 @kernel
 def react(platform, reacts, bodies, force, point, out):
-    """Add the reaction of the thrust: on a free platform, or outside (exhaust, fixed platform)."""
-    if platform is None:
-        add_outside_impulse(force, point, out)
-    if platform is not None:
-        _react_on_free_platform(reacts, bodies, force, point, out)
-
-
-@kernel
-def _react_on_free_platform(reacts, bodies, force, point, out):
-    if reacts:
+    """Add the reaction of the thrust: on a free platform that ``reacts``, or outside (exhaust, fixed
+    platform)."""
+    if platform.free and reacts:
         base = bodies.base
         push(out, PLATFORM, force, point, -1.0)
         velocity, speed = slot.velocity_at(base, point), base.velocity[0]
@@ -241,7 +234,7 @@ def add_body_force(force, mass, bodies, out):
 
 @kernel
 def _add_body_force_on_platform(force, platform, bodies, out):
-    if platform is not None:
+    if platform.free:
         _add_body_force(force, platform.mass, PLATFORM, bodies.base, out)
 
 
@@ -374,15 +367,15 @@ def _pair(platform, force, point, out):
     """Add a force on the payload, and its opposite at the same point on the platform or the
     ground."""
     push(out, PAYLOAD, force, point, 1.0)
-    if platform is None:
-        add_outside_impulse(force, point, out)
-    if platform is not None:
+    if platform.free:
         push(out, PLATFORM, force, point, -1.0)
+    else:
+        add_outside_impulse(force, point, out)
 
 
 @kernel
 def _axial_speed(platform, bodies):
     """X velocity (m/s) of the payload's mass centre relative to the platform's."""
-    if platform is not None:
+    if platform.free:
         return bodies.payload.velocity[0] - bodies.base.velocity[0]
     return bodies.payload.velocity[0]

@@ -46,7 +46,7 @@ def _begin(system, first_step, loop):
     """Begin a run at ``loop.start``."""
     _reset_clock(loop.clock, first_step)
     _reset_counts(loop.counts)
-    loop.counts.apart = _is_at_rest(system.platform)
+    loop.counts.apart = not system.platform.free
     _reset_audit(loop.audit)
     slot.copy(loop.start, loop.end, loop.start.size)
     _reset_compliance(system.compliance, system.friction)
@@ -63,11 +63,6 @@ def _begin(system, first_step, loop):
     pushers.reset(system.pushing)
     update_engaged(system, loop)  # pads may press from the start
     stick_slip.update(system.contact, system, loop)
-
-
-@kernel
-def _is_at_rest(platform):
-    return platform is None
 
 
 @kernel

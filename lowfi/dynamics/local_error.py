@@ -98,7 +98,7 @@ def worse(a, b):
 @kernel
 def _platform_ratio(tolerance, platform, dt, error, end):
     ratio = 0.0
-    if platform is not None:
+    if platform.free:
         ratio = _body_ratio(
             tolerance, platform.inverse_inertia, dt, error[PLATFORM:], end[PLATFORM:]
         )

@@ -131,7 +131,7 @@ def _copy(state, body, row):
 
 @kernel
 def _platform(platform, apart, state, base, row):
-    if platform is not None:
+    if platform.free:
         _body(platform.mass, apart, state, PLATFORM, base, row)
 
 

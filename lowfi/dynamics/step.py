@@ -177,14 +177,9 @@ def _part(system, loop):
     if parts:
         loop.counts.apart = True
         slot.take_apart(system.payload.mass, loop.start, slot.PAYLOAD)
-        _take_platform_apart(system.platform, loop.start)
+        if system.platform.free:
+            slot.take_apart(system.platform.mass, loop.start, slot.PLATFORM)
     return parts
-
-
-@kernel
-def _take_platform_apart(platform, state):
-    if platform is not None:
-        slot.take_apart(platform.mass, state, slot.PLATFORM)
 
 
 @kernel

@@ -14,19 +14,19 @@ from tipoff.workspace.run import Run
 from tipoff.workspace.store import Store
 
 FALLING = scenes.load("tiny").replace({"contact": None, "friction": None})
-FLYING = FALLING.replace({"platform": None})
+FLYING = FALLING.replace({"platform": None, "gravity.x": "1 m/s**2"})
 
 
 @pytest.fixture
 def runs(monkeypatch, tmp_path):
-    """A free flight from a platform and from the ground, and one that needs the kernel of the
-    first."""
+    """A free flight, a run on compliant contact, and one that needs the kernel of the first."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     lighter = FALLING.replace({"payload.mass": "3 kg", "thrust_offset": None})
-    return [
-        Run("lowfi", f"{number}", scene, lowfi.Numerics())
-        for number, scene in enumerate((FALLING, FLYING, lighter))
-    ]
+    first, last = (
+        Run("lowfi", name, scene, lowfi.Numerics())
+        for name, scene in (("first", FALLING), ("last", lighter))
+    )
+    return [first, pressed(0), last]
 
 
 def machine_codes(folder):
@@ -88,9 +88,13 @@ def mark(scene, fidelity="lowfi"):
 
 @pytest.mark.parametrize("fidelity", ["highfi", "lowfi"])
 def test_an_effect_needs_no_kernel_of_its_own(fidelity):
-    """Control: a fixed platform does."""
-    pulled = FLYING.replace({"gravity.x": "1 m/s**2"})
-    assert mark(pulled, fidelity) == mark(FLYING, fidelity) != mark(FALLING, fidelity)
+    """Nor does a fixed platform. Control: other elements and another kind of contact do."""
+    other = (
+        mark(scenes.load("channel"), fidelity)
+        if fidelity == "highfi"
+        else kernel_marks.mark(pressed(0))
+    )
+    assert mark(FALLING, fidelity) == mark(FLYING, fidelity) != other
 
 
 def pressed(modes) -> Run:

@@ -2,8 +2,8 @@
 first run that must wait for compilation.
 
 There are few kernels, because they skip the effects that a scene does not have. The reference has one
-for each kind of elements and of platform (free or fixed). The surrogate has one for each kind of contact
-and of platform, degree of the patterns, and walls of springs (straight or not).
+for each kind of elements. The surrogate has one for each kind of contact, degree of the patterns, and
+walls of springs (straight or not).
 """
 
 import functools
@@ -79,10 +79,9 @@ def are_there(run: Run) -> bool:
 def mark(run: Run) -> tuple[Path, str]:
     """The file of the mark of the kernels of ``run``, and its key."""
     folder, code = sources.cache_folder() / "kernels", _code(run.fidelity)
-    is_fixed = run.scene.platform is None
     if run.fidelity == "highfi":
-        return _mark(folder, code, is_fixed, type(run.scene.rail).__name__)
-    return _mark(folder, code, is_fixed, _degree(run), _is_at_offset_walls(run))
+        return _mark(folder, code, type(run.scene.rail).__name__)
+    return _mark(folder, code, _degree(run), _is_at_offset_walls(run))
 
 
 @functools.cache  # a run of the surrogate asks three times

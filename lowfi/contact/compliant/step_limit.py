@@ -209,8 +209,8 @@ def _trace(compliance, faces, platform, payload, count, body, base):
             compliance, faces, compliance.workspace.order[k // _RIGID], k % _RIGID, body, base
         )
         _answer_of_body(payload.inverse_inertia, body, wrench, answers[k, :_OF_PLATFORM])
-        _answer_of_platform(platform, base, wrench, answers[k, _OF_PLATFORM:])
-    inverse_mass = 1.0 / payload.mass + _inverse_mass(platform)
+        _answer_of_body(platform.inverse_inertia, base, wrench, answers[k, _OF_PLATFORM:])
+    inverse_mass = 1.0 / payload.mass + 1.0 / platform.mass
     total = 0.0
     for k in range(number):
         for j in range(number):
@@ -251,28 +251,12 @@ def _dot(a, b):
 
 
 @kernel
-def _inverse_mass(platform):
-    value = 0.0
-    if platform is not None:
-        value = 1.0 / platform.mass
-    return value
-
-
-@kernel
 def _answer_of_body(inverse_inertia, body, wrench, out):
     """Force, moment about the mass centre, and the angular acceleration of the body."""
     moment = _moment(body, wrench)
     rate = rotation.angular_velocity(body.turn, inverse_inertia, moment)
     for i in range(3):
         out[_FORCE + i], out[_MOMENT + i], out[_RATE + i] = wrench[0][i], moment[i], rate[i]
-
-
-@kernel
-def _answer_of_platform(platform, base, wrench, out):
-    if platform is None:
-        out[:] = 0.0
-    if platform is not None:
-        _answer_of_body(platform.inverse_inertia, base, wrench, out)
 
 
 @kernel
