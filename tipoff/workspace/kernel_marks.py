@@ -17,6 +17,7 @@ from tipoff import cache, sources
 from tipoff.files import content_hash
 from tipoff.kernels import cached, called
 from tipoff.mechanics.model_names import COMPLIANT
+from tipoff.scenes.rail import ProfileTable, SectionTable
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
 
@@ -80,7 +81,7 @@ def mark(run: Run) -> tuple[Path, str]:
     """The file of the mark of the kernels of ``run``, and its key."""
     folder, code = sources.cache_folder() / "kernels", _code(run.fidelity)
     if run.fidelity == "highfi":
-        return _mark(folder, code, type(run.scene.rail).__name__)
+        return _mark(folder, code, _elements(run.scene.rail))
     return _mark(folder, code, _degree(run), _is_at_offset_walls(run))
 
 
@@ -102,6 +103,11 @@ def _loop(fidelity: str) -> Any:
     else:
         from tipoff.lowfi.dynamics.integrate import integrate as loop
     return loop
+
+
+def _elements(rail: Any) -> str:
+    """The kind of elements of a rail: all sections are extruded."""
+    return "extruded" if isinstance(rail, SectionTable | ProfileTable) else type(rail).__name__
 
 
 def _is_at_offset_walls(run: Run) -> bool:
