@@ -126,7 +126,8 @@ def test_stress_is_that_of_the_held_rail():
 
 
 def test_a_bow_that_closes_the_clearance_is_warned_about():
-    run = highfi.run(tiny(thermal__platform_strain=-0.0026, duration=2e-3), COARSE)
+    warm = tiny(thermal__platform_strain=-0.0026, duration=1e-4, friction=None)  # needs no substeps
+    run = highfi.run(warm, COARSE)
     assert (
         "initial interference: pads 0, 1, 2, 3, 4, 5, 6, 7 press on the rail at ignition"
         in run.message
