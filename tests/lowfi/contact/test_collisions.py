@@ -33,7 +33,8 @@ TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
 )
 def test_impact_spot_values(p_mm, closing, force):
     """F = max(0, k p^e + c s(p/d) p') at the paper's pad, from the load on a face."""
-    contact = system.build(scene_model.build(scene(1e-3, 1e-4, contact=PAPER_PAD))).contact
+    pressed = system.build(scene_model.build(scene(1e-3, 1e-4, contact=PAPER_PAD)))
+    contact = pressed.contact
     turn, zero = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
     body = state.Motion(zero, (0.0, 0.0, -closing / 1e3), turn, zero, zero)
     face = np.zeros(FACE_SIZE)
@@ -41,7 +42,7 @@ def test_impact_spot_values(p_mm, closing, force):
     found = springs.load(
         contact,
         SMOOTH,
-        None,
+        pressed.platform,
         face,
         p_mm * 1e-3,
         body,
