@@ -18,7 +18,7 @@ import pytest
 from tests.lowfi.ensemble.test_damaged_store import fill, opened, state_of
 from tests.mechanics.test_damage import compliance
 from tests.studies.synthetic import flight
-from tipoff import cache, lowfi, scenes, sources
+from tipoff import cache, highfi, lowfi, scenes, sources
 from tipoff.calibration import rail_compliance
 from tipoff.files import (
     content_hash,
@@ -141,10 +141,10 @@ def chunk(folder, monkeypatch) -> Kept:
 
 def mark(folder, monkeypatch) -> Kept:
     """That kernels are there."""
-    made, fixed = [], SCENE.replace({"platform": None})
+    made: list[str] = []
     runs = {
-        name: Run("lowfi", "a", scene, lowfi.Numerics())
-        for name, scene in ((MINE, SCENE), (THEIRS, fixed))
+        MINE: Run("lowfi", "a", SCENE, lowfi.Numerics()),
+        THEIRS: Run("highfi", "a", SCENE, highfi.Numerics()),
     }
 
     def ask(name):

@@ -14,7 +14,7 @@ FILES = ("docs/peers.png", "README.md", "validation/peers/kept/exudyn.json", "lo
     [((), ""), (FILES[:3], ""), (FILES[3:], "+")],
     ids=["nothing", "documents, kept results", "code"],
 )
-def test_an_edit_that_could_change_numbers_is_marked(tmp_path, monkeypatch, changed, mark):
+def test_an_edit_that_could_change_numbers_is_marked(tmp_path, changed, mark):
     def git(*words: str) -> str:
         own = ("-c", "user.name=a", "-c", "user.email=a@b.c")
         done = subprocess.run(
@@ -30,6 +30,4 @@ def test_an_edit_that_could_change_numbers_is_marked(tmp_path, monkeypatch, chan
     git("commit", "-q", "-m", "all")
     for name in changed:
         (tmp_path / name).write_text("after")
-    monkeypatch.setattr(machine, "_ROOT", tmp_path)
-    found = machine._commit.__wrapped__()
-    assert found == git("rev-parse", "--short=12", "HEAD") + mark
+    assert machine.commit(tmp_path) == git("rev-parse", "--short=12", "HEAD") + mark

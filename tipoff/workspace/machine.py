@@ -32,7 +32,7 @@ def state() -> dict:
     here = describe()
     return {
         "version": sources.version("tipoff"),
-        "commit": _commit(),
+        "commit": commit(_ROOT),
         "date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d"),
         "processor": here["processor"],
         "cores": here["cores"],
@@ -43,18 +43,19 @@ def stated(made: dict | None) -> str:
     """A ``state`` in words; that it is not recorded if there is none."""
     if not made:
         return "not recorded"
-    commit = f"commit {made['commit']}, " if made["commit"] else ""
-    return f"tipoff {made['version']}, {commit}{made['date']}, {made['processor']}, {made['cores']} cores"
+    where = f"commit {made['commit']}, " if made["commit"] else ""
+    return f"tipoff {made['version']}, {where}{made['date']}, {made['processor']}, {made['cores']} cores"
 
 
 @functools.cache
-def _commit() -> str | None:
-    """Asked once: an edit during a run belongs to the next process."""
-    if not (_ROOT / ".git").exists():  # installed, or a copy without its history
+def commit(clone: Path) -> str | None:
+    """The commit of a ``clone`` as in ``state``. Asked once: an edit during a run belongs to the next
+    process."""
+    if not (clone / ".git").exists():  # installed, or a copy without its history
         return None
     try:
         head, changed = (
-            subprocess.run(["git", "-C", _ROOT, *asked], capture_output=True, text=True, check=True)
+            subprocess.run(["git", "-C", clone, *asked], capture_output=True, text=True, check=True)
             for asked in (
                 ("rev-parse", "--short=12", "HEAD"),
                 ("status", "--porcelain", "-uno", "--", ".", *_NO_CODE),
