@@ -57,7 +57,7 @@ class Body(NamedTuple):
     mass: float  # kg
     inertia: np.ndarray  # (3, 3) kg m2, about the mass centre, in body axes
     inverse_inertia: np.ndarray  # (3, 3) 1/(kg m2)
-    free: bool  # the platform of fixed rails is not
+    free: bool  # False for the platform of fixed rails
 
 
 # The platform of fixed rails: it does not move, whatever acts on it.

@@ -151,7 +151,7 @@ class Frame(NamedTuple):
     inverse_inertia: np.ndarray  # (3,3) 1/(kg m2), about its mass centre
     total_mass: float  # kg, with the rails
     centre: np.ndarray  # (3,) m, its mass centre from the frame's origin
-    free: bool = True
+    free: bool = True  # False for a fixed platform
 
 
 # Of a fixed platform: it does not move, whatever acts on it.

@@ -10,7 +10,7 @@ from pathlib import Path
 from tipoff import sources
 
 _ROOT = Path(__file__).resolve().parents[2]
-# Changes of these files change no number: documents, and results that are kept.
+# Documents and kept results: an edit of them changes no number.
 _NO_CODE = (":!docs", ":!*.md", ":!*/kept/*")
 
 
