@@ -9,6 +9,7 @@ from tipoff.files import read_json
 from tipoff.studies.agreement import distribution_page
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement.distributions import Distribution
+from tipoff.studies.agreement.equivalence import AXES, Comparison
 from tipoff.studies.convergence import page
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.convergence.stage import Convergence
@@ -57,6 +58,27 @@ def distributions(found: Sequence[Distribution]) -> list[Part]:
         "[chaotic_conditions.md](chaotic_conditions.md) explains the test."
     )
     return [Table(table.columns, table.rows, title=title)]
+
+
+def quantiles(found: Sequence[Distribution]) -> Table:
+    """Quantiles of the settled rates of the finite elements and of each surrogate, condition by condition."""
+    rows: list[tuple] = []
+    for item in found:
+        compared = next((own.comparisons for own in item.models.values() if own.comparisons), [])
+        rows.append((item.condition, "finite elements", *_by_axis(compared, "reference"), "", ""))
+        for own in item.models.values():
+            bound = number(own.worst.bound if own.worst else None, ".2f")
+            judged = own.judgement.removesuffix(" as distribution")
+            rows.append(("", own.title, *_by_axis(own.comparisons, "surrogate"), bound, judged))
+    heads = ("condition", "10, 50, 90 % of the rate about", *AXES, "bound", "verdict")
+    return Table(heads, rows)
+
+
+def _by_axis(found: Sequence[Comparison], model: str) -> list[str]:
+    """The quantiles of a ``model``, reference or surrogate, in deg/s: a text for each axis; empty without
+    comparisons, where launches did not settle."""
+    values = [(item.axis, f"{getattr(item, f'{model}_deg_s'):z.1f}") for item in found]
+    return [", ".join(value for own, value in values if own == axis) for axis in AXES]
 
 
 def _cost(found: Cost) -> Table:

@@ -1,5 +1,5 @@
-"""Writes the figures of README.md, docs/results.md, docs/tails.md and their pictures from the result files of
-``make full-report``.
+"""Writes the figures of README.md, docs/results.md, docs/tails.md, their pictures, and the distributions in the
+tutorials from the result files of ``make full-report``.
 
     python -m validation.documents.readme [FOLDER]
 
@@ -50,6 +50,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).parent / "kept"
 _SCENE = "reference"
 _RAILS = ("thin", "titanium")
+_LAUNCHERS = {"cubesat_3u": "deployer"}  # scenes whose distributions a tutorial shows, and its name
 _TITLE = """# Results on the reference scene
 
 Written by `python -m validation.documents.readme` from the kept files of `make full-report`. Times
@@ -87,6 +88,7 @@ _ON_PAGE = (
 _SHOWN = (
     *(f"{_SCENE}/{name}.json" for name in (*_ON_PAGE, "tails")),
     *(f"{rail}/{name}.json" for rail in _RAILS for name in ("agreement", "calibration")),
+    *(f"{scene}/agreement.json" for scene in _LAUNCHERS),
     *(f"bench/{name}.json" for name in ("highfi", "lowfi")),
 )
 
@@ -118,7 +120,7 @@ def texts() -> dict[Path, str]:
     """The pages that are written from the kept results, by their paths."""
     folder = KEPT / _SCENE
     start = (_ROOT / "README.md").read_text(encoding="utf-8")
-    start = _into_readme(start, "results", read_json(folder / "agreement.json"), headline(folder))
+    start = _into(start, "results", read_json(folder / "agreement.json"), headline(folder))
     made_by = state.sentence({name: read(folder / f"{name}.json") for name in _ON_PAGE})
     found = {
         _ROOT / "docs" / "results.md": (
@@ -129,8 +131,16 @@ def texts() -> dict[Path, str]:
         tails = checked.STAGE.read(document)
         said = [f"{_upper(each)}." for each in tails_page.brief(tails)]
         lines = "\n  - ".join(["- **Tails**, from [random ejections](docs/tails.md):", *said])
-        start = _into_readme(start, "tails", document, lines)
+        start = _into(start, "tails", document, lines)
         found[_ROOT / "docs" / "tails.md"] = _of_tails(tails, document)
+    for scene, name in _LAUNCHERS.items():
+        if (document := read(KEPT / scene / "agreement.json")) is not None:
+            page = _ROOT / "docs" / "tutorials" / f"{name}.md"
+            own = further.quantiles(compare.STAGE.read(document).distributions)
+            lines = markdown([own, state.sentence({"agreement": document})])
+            found[page] = _into(
+                page.read_text(encoding="utf-8"), "distributions", document, f"\n{lines}\n"
+            )
     return found | {_ROOT / "README.md": start}
 
 
@@ -150,8 +160,8 @@ def _pictures(folder: Path) -> Iterator[tuple[Chart | Picture, dict]]:
             yield drawn.chart, document.get("state") or {}
 
 
-def _into_readme(text: str, name: str, document: dict, lines: str) -> str:
-    """The ``text`` of README with ``lines`` on a result file's ``document`` between the marks of ``name``."""
+def _into(text: str, name: str, document: dict, lines: str) -> str:
+    """The ``text`` of a page with ``lines`` on a result file's ``document`` between the marks of ``name``."""
     end = f"<!-- end of {name} -->"
     before, rest = re.split(f"<!-- {name}[,:].*-->", text, maxsplit=1)
     return f"{before}{state.mark(name, document)}\n{lines}\n{end}{rest.split(end)[1]}"

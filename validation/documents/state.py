@@ -19,6 +19,6 @@ def sentence(documents: Mapping[str, dict | None]) -> str:
 
 
 def mark(name: str, document: dict) -> str:
-    """The first line of the part ``name`` of README: the state of its numbers, and what writes it."""
+    """The first line of the part ``name`` of a page: the state of its numbers, and what writes it."""
     said = machine.stated(document.get("state"))
     return f"<!-- {name}, state {said}: python -m validation.documents.readme -->"

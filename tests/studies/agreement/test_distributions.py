@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 import pytest
+from scipy.stats.mstats import hdquantiles
 
 from tests.studies.agreement.made import ROW
 from tests.studies.synthetic import flight
@@ -238,6 +239,21 @@ def test_figure(study, monkeypatch):
     assert np.all(np.diff(reference.x) >= 0.0) and np.all(np.diff(reference.y) >= 0.0)
     middle = np.interp(0.5, drawn.y, drawn.x)
     assert middle == pytest.approx(0.4, abs=0.2)
+
+
+def test_the_table_of_a_tutorial_has_the_quantiles_of_both_models(study, monkeypatch):
+    """Each surrogate is a row below the reference. Control: launches that do not settle have no quantiles."""
+    stub(monkeypatch, 0.4)
+    found = compared(judged(study))
+    reference, *others = further.quantiles([found]).rows
+    assert len(others) == len(found.models)
+    for place in range(3):
+        rates = [rates[place] for rates in found.settled_deg_s]
+        values = [float(each) for each in reference[2 + place].split(", ")]
+        assert values == pytest.approx(np.ravel(hdquantiles(rates, [0.1, 0.5, 0.9])), abs=0.051)
+    stub(monkeypatch, 0.4, lost=(3,))
+    reference, *others = further.quantiles([compared(judged(study))]).rows
+    assert set(reference[2:5]) == {""} and verdicts.CANNOT in others[0]
 
 
 @pytest.mark.slow
